@@ -31,10 +31,10 @@ use crate::pair::{Nearest, PairWorkspace};
 use crate::sampler::{Placed, arbitrary};
 use patch::Patches;
 pub(crate) use patch::{carried, followed};
-pub(crate) use polish::{Curvature, Edge, Polished, polished, reach};
+pub(crate) use polish::{Edge, Polish, Polished, polished};
 use region::Region;
 pub(crate) use region::distance;
-pub(crate) use solver::{Offer, choose};
+pub(crate) use solver::{Offer, choose, offer};
 
 /// Contacts closer than this many spacings, with normals within 37°, are copies.
 const COPIES: f64 = 1.5;
@@ -261,6 +261,10 @@ impl<const D: usize> Spanned<D> {
         let SeparatedPair { pair, best, .. } = separated;
         let first = Touch::at(pair, *best);
         let mut region = region::find(pair, settings, budget, workspace, first);
+        if region.candidates.len() > 1 && first.gap > settings.margin {
+            // It is beside the region, and would be no contact in its corner.
+            region.candidates.remove(0);
+        }
         let mut patches = Patches { pair: *pair, settings, candidates: &region.candidates };
         let mut members = patches.contacts();
         patches.fill(&mut region.middles, &mut members);
@@ -428,13 +432,13 @@ impl<const D: usize> Manifold<D> {
     ) {
         let mut offers = Vec::with_capacity(members.len());
         for (i, member) in members.iter().enumerate() {
-            let far = reach(i == 0, settings);
-            let found = polished(pair, &member.touch, far, &mut None, settings)
+            let found = polished(pair, &member.touch, i == 0, &mut Polish::default(), settings)
                 .unwrap_or_else(|| member.touch.usual(pair, settings));
-            let contact = found.contact.placed(&pair.world_from_frame);
+            let contact = found.contact.placed(&pair.world_from_frame).with_id(i as u64);
             // Where a field is a bound, surfaces may be farther apart than its values.
             if i == 0 || contact.gap <= settings.margin {
-                offers.push(Offer { contact: contact.with_id(i as u64), is_held: false });
+                let is_slope = found.is_slope;
+                offer(&mut offers, Offer { contact, is_held: false, is_slope }, settings);
             }
         }
         let chosen = (&mut self.contacts, &mut self.groups);
@@ -442,6 +446,18 @@ impl<const D: usize> Manifold<D> {
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             *contact = contact.with_id(i as u64);
         }
+    }
+
+    /// Chooses and groups the contacts anew, whose normals history has changed.
+    pub(crate) fn regroup(&mut self, settings: &ManifoldSettings, slop: f64) {
+        let mut offers = Vec::with_capacity(self.contacts.len());
+        for contact in self.contacts.drain(..) {
+            let is_held = contact.age > 0;
+            offer(&mut offers, Offer { contact, is_held, is_slope: false }, settings);
+        }
+        self.groups.clear();
+        let chosen = (&mut self.contacts, &mut self.groups);
+        self.dropped += choose(&mut offers, settings, slop, chosen);
     }
 
     /// Takes a contact as the best point if it is deeper by the fields' values.

@@ -28,6 +28,9 @@ use crate::pair::distance_bound::descend;
 /// Gradients are opposite if the length of the sum of the unit vectors is at most this.
 pub(crate) const OPPOSITE: f64 = 1e-6;
 
+/// The gap falls if the part of the sum along a direction is longer.
+const SLOPE: f64 = 1e-5;
+
 /// Steps of Newton's method at most.
 const STEPS: usize = 8;
 
@@ -49,6 +52,12 @@ const BEYOND: f64 = 1.5;
 /// The first step to the lowest point of an edge, in spacings.
 const LOWER: f64 = 0.25;
 
+/// The precision of the lowest point of an edge, as a share of [`ManifoldSettings::precision_length`].
+const LOWEST: f64 = 1e-5;
+
+/// An edge is near a touch of nearly parallel faces within so many spacings.
+const NEAR: f64 = 0.15;
+
 /// An edge is steep if it leads down by more than this share of the way, 6°.
 const STEEP: f64 = 0.1;
 
@@ -58,7 +67,7 @@ const DEEPEST_MOVES: f64 = 2.0;
 const OTHERS_MOVE: f64 = 0.5;
 
 /// How far a touch may move to where the gap is least [m].
-pub(crate) fn reach(is_deepest: bool, settings: &ManifoldSettings) -> f64 {
+fn reach(is_deepest: bool, settings: &ManifoldSettings) -> f64 {
     settings.spacing * if is_deepest { DEEPEST_MOVES } else { OTHERS_MOVE }
 }
 
@@ -70,6 +79,13 @@ struct Principal<const D: usize> {
     direction: Vector<f64, D>,
     /// The second derivative of the gap [1/m].
     curvature: f64,
+}
+
+impl<const D: usize> Principal<D> {
+    /// Whether the gap has a least point along this direction.
+    fn is_curved(&self, settings: &ManifoldSettings) -> bool {
+        self.curvature * FLAT * settings.spacing > 1.0
+    }
 }
 
 /// How the gap curves at a touch: along one direction in the plane, along two in space.
@@ -85,6 +101,8 @@ pub(crate) struct Curvature<const D: usize> {
 struct Opposed<const D: usize> {
     touch: Touch<D>,
     sum: Vector<f64, D>,
+    /// Whether the gap falls to a least point that was not reached.
+    is_slope: bool,
 }
 
 impl<const D: usize> Curvature<D> {
@@ -122,6 +140,13 @@ impl<const D: usize> Curvature<D> {
         Some(Self { most, least: Some(least) })
     }
 
+    /// Whether the gap falls along a direction in which it has a least point.
+    fn is_slope(&self, sum: Vector<f64, D>, settings: &ManifoldSettings) -> bool {
+        std::iter::once(&self.most).chain(&self.least).any(|principal| {
+            principal.is_curved(settings) && sum.dot(principal.direction).abs() > SLOPE
+        })
+    }
+
     /// The step of Newton's method, without the directions along which the gap has no least point within
     /// `far` [m].
     fn step(
@@ -132,10 +157,10 @@ impl<const D: usize> Curvature<D> {
     ) -> Vector<f64, D> {
         let principals = std::iter::once(&self.most).chain(&self.least);
         let mut step = Vector::ZERO;
-        for Principal { direction, curvature } in principals {
-            let way = -sum.dot(*direction) / curvature;
-            if curvature * FLAT * settings.spacing > 1.0 && way.abs() <= far {
-                step += *direction * way;
+        for principal in principals {
+            let way = -sum.dot(principal.direction) / principal.curvature;
+            if principal.is_curved(settings) && way.abs() <= far {
+                step += principal.direction * way;
             }
         }
         step
@@ -167,49 +192,89 @@ pub(crate) struct Polished<const D: usize> {
     pub(crate) contact: Contact<D>,
     /// The edge of one body that touches a face of the other, if one does.
     pub(crate) edge: Option<Edge<D>>,
+    /// Whether the gap falls from here to a least point that is farther than a touch moves: a place of a patch
+    /// whose deepest contact is elsewhere.
+    pub(crate) is_slope: bool,
 }
 
-/// A touch next to `touch` where the gap is least, if there is one within `far` [m] along the surface
-/// between. `None` where the bodies do not face each other as they did. A known `curvature` saves evaluations,
-/// and the new one replaces it.
+/// What is known of a touch from an earlier step: it saves evaluations.
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Polish<const D: usize> {
+    curvature: Option<Curvature<D>>,
+    /// Whether neither body has an edge there.
+    is_smooth: bool,
+}
+
+/// A touch next to `touch` where the gap is least, if there is one within its [`reach`] along the surface
+/// between. `None` where the bodies do not face each other as they did. What is `known` is renewed.
 pub(crate) fn polished<const D: usize>(
     pair: &mut BodyPair<'_, D>,
     touch: &Touch<D>,
-    far: f64,
-    curvature: &mut Option<Curvature<D>>,
+    is_deepest: bool,
+    known: &mut Polish<D>,
     settings: &ManifoldSettings,
 ) -> Option<Polished<D>> {
     if touch.source != NormalSource::Gradients {
         return None;
     }
-    let found = opposed(pair, touch, far, curvature, settings);
-    if let Some(Opposed { touch, sum }) = found
-        && touch.gap >= -settings.margin
-        && sum.norm() <= EDGE
-    {
-        let contact = touch.opposed_contact(pair, settings);
-        let contact = contact.unwrap_or_else(|| touch.contact_in_frame(pair, settings.spacing));
-        return Some(Polished { touch, contact, edge: None });
+    let far = reach(is_deepest, settings);
+    let mut found = opposed(pair, touch, far, &mut known.curvature, settings);
+    if found.is_some_and(|found| found.sum.norm() > EDGE) && !is_deepest {
+        // From the slope of a valley to its bottom.
+        found = opposed(pair, touch, reach(true, settings), &mut known.curvature, settings);
     }
-    let is_deepest = far > OTHERS_MOVE * settings.spacing;
+    if let Some(found) = found
+        && found.touch.gap >= -settings.margin
+        && found.sum.norm() <= EDGE
+    {
+        return Some(found.on_flat(pair, is_deepest, known, settings));
+    }
     if let Some(Opposed { touch, .. }) = found
         && touch.gap > BEYOND * settings.margin
         && !is_deepest
     {
         let contact = Contact::estimated(touch.point, touch.normal, touch.gap);
-        return Some(Polished { touch, contact, edge: None });
+        return Some(Polished { touch, contact, edge: None, is_slope: true });
     }
     // Next to a corner, the bodies may face each other at no point.
     let here = found
         .map_or_else(|| Touch { gap: pair.gap_at(touch.point), ..*touch }, |found| found.touch);
-    let edge = Edge::of(pair, &here, far, settings);
+    let edge = Edge::of(pair, &here, is_deepest, settings);
     // A contact is no less deep than the values say.
     let precise = super::SAME_DEPTH * settings.precision_length();
     let is_deep =
         |edge: &Polished<D>| here.gap >= 0.0 || edge.contact.gap <= here.gap + precise;
-    edge.and_then(|edge| edge.contact(pair, settings))
-        .filter(is_deep)
-        .or_else(|| found.map(|found| found.touch.usual(pair, settings)))
+    edge.and_then(|edge| edge.contact(pair, settings)).filter(is_deep).or_else(|| {
+        let is_slope = !is_deepest && here.gap > -settings.margin;
+        found.map(|found| Polished { is_slope, ..found.touch.usual(pair, settings) })
+    })
+}
+
+impl<const D: usize> Opposed<D> {
+    /// The contact where gradients are opposite, or nearly so as at a tilted face: there the edge of one body
+    /// touches the face of the other.
+    fn on_flat(
+        self,
+        pair: &mut BodyPair<'_, D>,
+        is_deepest: bool,
+        known: &mut Polish<D>,
+        settings: &ManifoldSettings,
+    ) -> Polished<D> {
+        let Self { touch, sum, is_slope } = self;
+        if sum.norm() > OPPOSITE && !known.is_smooth {
+            let edge = Edge::of_tilted(pair, &touch, is_deepest, settings);
+            let found = edge.and_then(|edge| edge.contact(pair, settings));
+            if let Some(found) = found {
+                return found;
+            }
+            known.is_smooth = true;
+        }
+        let contact = touch.opposed_contact(pair, settings);
+        let contact = contact.unwrap_or_else(|| touch.contact_in_frame(pair, settings.spacing));
+        let is_slope = is_slope && !is_deepest;
+        Polished { touch, contact, edge: None, is_slope }
+    }
 }
 
 /// A point of an edge of one body that touches a face of the other: it stays where it is in its body.
@@ -223,50 +288,77 @@ pub(crate) struct Edge<const D: usize> {
     normal: Vector<f64, D>,
 }
 
+/// An edge above a face.
+struct Low<const D: usize> {
+    edge: Edge<D>,
+    /// How high it is [m].
+    height: f64,
+    /// Whether the way to it leads down steeply.
+    is_steep: bool,
+}
+
 impl<const D: usize> Edge<D> {
     /// The edge at a touch: of the body that has one, if the other has a face there, else of the body that
     /// lies deeper in the other.
     fn of(
         pair: &mut BodyPair<'_, D>,
         touch: &Touch<D>,
-        far: f64,
+        is_deepest: bool,
         settings: &ManifoldSettings,
     ) -> Option<Self> {
         let slopes = pair.slopes(touch.point);
         if let Some(face) = pair.face(touch.point, slopes) {
-            return Self::on(pair, face.body, touch, (far, settings)).map(|(_, edge)| edge);
+            let on = Self::on(pair, face.body, touch, (is_deepest, settings));
+            return on.map(|low| low.edge);
         }
-        let edges = [0, 1].map(|face| Self::on(pair, face, touch, (far, settings)));
-        let deeper = edges.into_iter().flatten().min_by(|one, other| one.0.total_cmp(&other.0));
-        deeper.map(|(_, edge)| edge)
+        let low = [0, 1].map(|face| Self::on(pair, face, touch, (is_deepest, settings)));
+        // Without a steep way to it there is no edge.
+        let steep = low.into_iter().flatten().filter(|low| low.is_steep || is_deepest);
+        let deeper = steep.min_by(|one, other| one.height.total_cmp(&other.height));
+        deeper.map(|low| low.edge)
     }
 
-    /// The edge of one body on a face of the other at a touch, and its height above it [m]: the lowest
-    /// point, if it is within `far` [m] and the way there leads down steeply, or the touch is the deepest; else
-    /// the point next to the touch.
+    /// The edge at a touch of nearly parallel faces, of the one body that has an edge near.
+    fn of_tilted(
+        pair: &mut BodyPair<'_, D>,
+        touch: &Touch<D>,
+        is_deepest: bool,
+        settings: &ManifoldSettings,
+    ) -> Option<Self> {
+        let slopes = pair.slopes(touch.point);
+        let body = pair.body_with_edge(touch.point, slopes, NEAR * settings.spacing)?;
+        let on = Self::on(pair, 1 - body, touch, (is_deepest, settings));
+        on.map(|low| low.edge)
+    }
+
+    /// The edge of one body on a face of the other at a touch: the lowest point, if the touch is the deepest or the way there leads down steeply, else the point next to the
+    /// touch. `None` if a steep way is longer than a touch moves.
     fn on(
         pair: &mut BodyPair<'_, D>,
         face: usize,
         touch: &Touch<D>,
-        (far, settings): (f64, &ManifoldSettings),
-    ) -> Option<(f64, Self)> {
+        (is_deepest, settings): (bool, &ManifoldSettings),
+    ) -> Option<Low<D>> {
         let body = 1 - face;
         let next = pair.surface_point(body, touch.point);
         let near = settings.spacing.max(touch.gap.abs());
         let start = next.filter(|p| distance(*p, touch.point) <= near)?;
         let at_start = pair.slope(face, start);
         let first = LOWER * settings.spacing;
-        let precise = super::SAME_DEPTH * settings.precision_length();
+        let precise = LOWEST * settings.precision_length();
         let (lowest, at_lowest) = patch::lowest(pair, face, (start, first), precise);
         let way = distance(lowest, start);
-        let is_far = way > far || at_start.0 - at_lowest.0 < STEEP * way;
-        let is_deepest = far > OTHERS_MOVE * settings.spacing;
+        let is_steep = at_start.0 - at_lowest.0 >= STEEP * way;
+        if is_steep && !is_deepest && way > reach(true, settings) {
+            return None;
+        }
+        let is_lowest = is_steep || is_deepest;
         let (p, (height, slope)) =
-            if is_far && !is_deepest { (start, at_start) } else { (lowest, at_lowest) };
+            if is_lowest { (lowest, at_lowest) } else { (start, at_start) };
         let outwards = slope.normalized()?;
         let normal = if face == 0 { outwards } else { -outwards };
         let point = if body == 0 { p } else { pair.second_from_frame.transform_point(p) };
-        Some((height, Self { body, point, normal }))
+        Some(Low { edge: Self { body, point, normal }, height, is_steep })
     }
 
     /// The contact of the edge where both bodies are now. `None` where the other body no longer faces it as
@@ -296,7 +388,7 @@ impl<const D: usize> Edge<D> {
             gap: contact.gap,
             source: NormalSource::Gradients,
         };
-        Some(Polished { touch, contact, edge: Some(*self) })
+        Some(Polished { touch, contact, edge: Some(*self), is_slope: false })
     }
 }
 
@@ -309,7 +401,7 @@ fn opposed<const D: usize>(
 ) -> Option<Opposed<D>> {
     let at = |pair: &mut BodyPair<'_, D>, p| {
         let (touch, slopes) = settled_slopes(pair, p, settings.spacing, settings)?;
-        Some(Opposed { touch, sum: sum(slopes)? })
+        Some(Opposed { touch, sum: sum(slopes)?, is_slope: false })
     };
     let mut here = at(pair, touch.point)?;
     if here.touch.normal.dot(touch.normal) <= super::LIKE {
@@ -341,6 +433,7 @@ fn opposed<const D: usize>(
             None => break,
         }
     }
+    here.is_slope = curvature.is_some_and(|known| known.is_slope(here.sum, settings));
     Some(here)
 }
 
@@ -353,7 +446,7 @@ impl<const D: usize> Touch<D> {
     ) -> Polished<D> {
         let along = self.along_surface(pair, settings).unwrap_or(*self);
         let contact = along.contact_in_frame(pair, settings.spacing);
-        Polished { touch: *self, contact, edge: None }
+        Polished { touch: *self, contact, edge: None, is_slope: false }
     }
 
     /// The touch at the deepest point near, where the bodies no longer face each other as they did: edges that

@@ -37,6 +37,31 @@ pub(crate) struct Offer<const D: usize> {
     pub(crate) contact: Contact<D>,
     /// Whether the solver had it in the step before.
     pub(crate) is_held: bool,
+    /// Whether the gap falls from here to a least point elsewhere: it leads no group.
+    pub(crate) is_slope: bool,
+}
+
+/// Adds an offer, or joins it with one at the same place: the deeper contact stays, with the id of the one that
+/// the solver has.
+pub(crate) fn offer<const D: usize>(
+    offers: &mut Vec<Offer<D>>,
+    new: Offer<D>,
+    settings: &ManifoldSettings,
+) {
+    let is_one = |old: &&mut Offer<D>| {
+        (old.place() - new.place()).norm() <= ONE * settings.spacing
+            && old.contact.normal.dot(new.contact.normal) > PARALLEL
+    };
+    match offers.iter_mut().find(is_one) {
+        Some(old) => {
+            let held = if old.is_held || !new.is_held { *old } else { new };
+            let deeper = if new.contact.gap < old.contact.gap { new } else { *old };
+            let contact = deeper.contact.with_id(held.contact.id);
+            let is_slope = old.is_slope && new.is_slope;
+            *old = Offer { contact, is_held: held.is_held, is_slope };
+        }
+        None => offers.push(new),
+    }
 }
 
 impl<const D: usize> Offer<D> {
@@ -66,6 +91,10 @@ pub(crate) fn choose<const D: usize>(
     let most = settings.most.max(1);
     let (mut rest, mut dropped) = (offers, 0);
     while let Some(deepest) = rest.first().copied() {
+        if deepest.is_slope {
+            rest = &mut rest[1..];
+            continue;
+        }
         let is_of_group =
             |offer: &Offer<D>| offer.contact.normal.dot(deepest.contact.normal) > GROUP;
         let count = gather(rest, is_of_group);
@@ -77,7 +106,7 @@ pub(crate) fn choose<const D: usize>(
         };
         let flat = gather(group, is_flat);
         let patch = &mut group[..flat];
-        let count = spread(patch, settings);
+        let count = spread(patch, settings, slop);
         let room = most - contacts.len();
         dropped += count.saturating_sub(room);
         let kept = &patch[..count.min(room)];
@@ -105,41 +134,58 @@ fn gather<const D: usize>(
 }
 
 /// Moves the contacts that hold a patch to the front: the deepest, and those that make the patch largest. At
-/// most two in the plane and four in space. Returns how many they are.
-fn spread<const D: usize>(patch: &mut [Offer<D>], settings: &ManifoldSettings) -> usize {
+/// most two in the plane and four in space. Those whose gap is within the slop come first: they carry, and the
+/// others do not touch yet. Returns how many they are.
+fn spread<const D: usize>(
+    patch: &mut [Offer<D>],
+    settings: &ManifoldSettings,
+    slop: f64,
+) -> usize {
     let least = ONE * settings.spacing;
-    let deepest = patch[0].contact.gap + AS_DEEP * settings.margin;
-    let as_deep = patch.iter().take_while(|offer| offer.contact.gap <= deepest).count();
+    let deepest = patch[0].contact.gap;
+    let within = |patch: &[Offer<D>], far: f64| {
+        patch.iter().take_while(|offer| offer.contact.gap <= deepest + far).count()
+    };
+    let as_deep = within(patch, AS_DEEP * settings.margin);
+    let mut carrying = within(patch, slop);
     let mut centre = Vector::ZERO;
-    for offer in patch.iter() {
-        centre += offer.place() * (1.0 / patch.len() as f64);
+    for offer in &patch[..carrying] {
+        centre += offer.place() * (1.0 / carrying as f64);
     }
     take(patch, 0, as_deep, |offer| (offer.place() - centre).norm());
+    // The next one that is at least `least` out, of those that carry if there is one.
+    let mut next =
+        |patch: &mut [Offer<D>], count: usize, measure: &dyn Fn(&Offer<D>) -> f64| {
+            if take(patch, count, carrying, measure) >= least {
+                return true;
+            }
+            carrying += 1;
+            take(patch, count, patch.len(), measure) >= least
+        };
     let first = patch[0].place();
-    let far = take(patch, 1, patch.len(), |offer| (offer.place() - first).norm());
-    if far < least {
+    if !next(patch, 1, &|offer| (offer.place() - first).norm()) {
         return 1;
     }
     if D == 2 {
         return 2;
     }
     let normal = patch[0].contact.normal;
-    let side = across(patch[1].place() - first, normal);
-    let wide = take(patch, 2, patch.len(), |offer| (offer.place() - first).dot(side).abs());
-    if wide < least {
+    let second = patch[1].place();
+    let side = across(second - first, normal);
+    if !next(patch, 2, &|offer| (offer.place() - first).dot(side).abs()) {
         return 2;
     }
-    let corners = [first, patch[1].place(), patch[2].place()];
+    let corners = [first, second, patch[2].place()];
     let turn = if (corners[2] - first).dot(side) > 0.0 { -1.0 } else { 1.0 };
-    let beyond = take(patch, 3, patch.len(), |offer| {
-        // How much larger the patch is with the contact beyond one of its sides.
+    // How much larger the patch is with a contact beyond one of its sides.
+    let beyond = |offer: &Offer<D>| {
         (0..3).fold(0.0_f64, |most, i| {
             let (from, to) = (corners[i], corners[(i + 1) % 3]);
             let outwards = across(to - from, normal) * turn;
             most.max((offer.place() - from).dot(outwards))
         })
-    });
-    if beyond < least { 3 } else { 4 }
+    };
+    if next(patch, 3, &beyond) { 4 } else { 3 }
 }
 
 /// Moves the offer with the largest measure [m] of those from `first` to `end` to `first`, and returns

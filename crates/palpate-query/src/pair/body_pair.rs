@@ -379,6 +379,29 @@ impl<const D: usize> BodyPair<'_, D> {
             return None;
         }
         let far = (4.0 * a.max(b).abs()).max(AROUND * self.smaller_size());
+        match self.body_with_edge_near(p, units, far)? {
+            1 => Some(Face { body: 0, normal: units[0] }),
+            _ => Some(Face { body: 1, normal: -units[1] }),
+        }
+    }
+
+    /// The one body that has an edge within `far` [m] of a point with these slopes, where the other has a
+    /// face.
+    pub(crate) fn body_with_edge(
+        &mut self,
+        p: Point<D>,
+        [(_, slope_a), (_, slope_b)]: Slopes<D>,
+        far: f64,
+    ) -> Option<usize> {
+        self.body_with_edge_near(p, [normal(slope_a)?, normal(slope_b)?], far)
+    }
+
+    fn body_with_edge_near(
+        &mut self,
+        p: Point<D>,
+        units: [Vector<f64, D>; 2],
+        far: f64,
+    ) -> Option<usize> {
         let mut least = [1.0_f64; 2];
         for k in 0..D {
             for side in [-far, far] {
@@ -391,8 +414,8 @@ impl<const D: usize> BodyPair<'_, D> {
         }
         let is_face = |body: usize| least[body] > ALIKE && least[1 - body] < TURNED;
         match [is_face(0), is_face(1)] {
-            [true, _] => Some(Face { body: 0, normal: units[0] }),
-            [_, true] => Some(Face { body: 1, normal: -units[1] }),
+            [true, _] => Some(1),
+            [_, true] => Some(0),
             _ => None,
         }
     }

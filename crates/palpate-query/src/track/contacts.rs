@@ -17,8 +17,8 @@ use crate::certified::Limits;
 use crate::contact::Contact;
 use crate::error::QueryError;
 use crate::manifold::{
-    Curvature, Edge, ManifoldSettings, Offer, Polished, SeparatedPair, Spanned, Touch, carried,
-    choose, distance, polished, reach,
+    Edge, ManifoldSettings, Offer, Polish, Polished, SeparatedPair, Spanned, Touch, carried,
+    choose, distance, offer, polished,
 };
 use crate::pair::PairWorkspace;
 use crate::pair::body_pair::BodyPair;
@@ -102,7 +102,7 @@ struct Follower<const D: usize> {
     id: u64,
     /// For how many steps before the last one the solver had it; `None` if it had not in the last one.
     age: Option<u32>,
-    curvature: Option<Curvature<D>>,
+    polish: Polish<D>,
     edge: Option<Edge<D>>,
 }
 
@@ -128,8 +128,7 @@ impl<const D: usize> Follower<D> {
         let Some(start) = carried else {
             return self.found.at_place(with_second).found_again(pair, settings);
         };
-        let far = reach(self.is_deepest, settings);
-        let found = polished(pair, &start, far, &mut self.curvature, settings);
+        let found = polished(pair, &start, self.is_deepest, &mut self.polish, settings);
         found.or_else(|| {
             if is_new {
                 Some(start.usual(pair, settings))
@@ -156,7 +155,7 @@ impl<const D: usize> Follower<D> {
             is_deepest: i == 0,
             id: contact.id,
             age: contact.age.checked_sub(1),
-            curvature: None,
+            polish: Polish::default(),
             edge: None,
         });
         followers.collect()
@@ -220,7 +219,7 @@ impl<const D: usize> Carried<D> {
         let second_to_frame = now.inverse();
         let (before, is_new) = (pair.evaluations, !self.has_moved);
         for follower in &mut self.followers {
-            let Some(Polished { touch, contact, edge }) =
+            let Some(Polished { touch, contact, edge, is_slope }) =
                 follower.moved(pair, (self.found_at, second_to_frame, is_new), settings)
             else {
                 if follower.age.is_some() {
@@ -235,7 +234,8 @@ impl<const D: usize> Carried<D> {
             follower.last = touch;
             if contact.gap <= settings.margin {
                 let contact = contact.placed(&pair.world_from_frame).with_id(follower.id);
-                into.offers.push(Offer { contact, is_held: follower.age.is_some() });
+                let is_held = follower.age.is_some();
+                offer(&mut into.offers, Offer { contact, is_held, is_slope }, settings);
             }
         }
         if self.is_hiding(pair, second_to_frame, settings, &into.offers) {
@@ -341,6 +341,7 @@ impl<const D: usize> Track<D> {
         let wide = ManifoldSettings { margin: FARTHER * settings.margin, ..*settings };
         let (separation, best) = self.search(poses, wide.goal(limits), limits, workspace)?;
         let mut spent = separation.evaluations;
+        let mut before = Names::default();
         if separation.upper >= -settings.margin {
             let [a, b] = &self.shapes;
             let pair = BodyPair::new(Placed::new(a, poses[0]), Placed::new(b, poses[1]))?;
@@ -360,6 +361,7 @@ impl<const D: usize> Track<D> {
             };
             if separation.lower <= wide.margin {
                 let spanned = Spanned::find(&mut separated, &wide, limits.budget, workspace);
+                before = self.memory.names.clone();
                 carried.is_whole = !spanned.is_cut_off();
                 let names = &mut self.memory.names;
                 carried.followers =
@@ -368,11 +370,15 @@ impl<const D: usize> Track<D> {
             spent += separated.pair.evaluations;
             let found = &mut self.found;
             if carried.follow(&mut separated.pair, settings, slop, found) {
-                self.memory.carried = Some(carried);
+                // Without a bound there is nothing that lasts.
+                self.memory.carried = Some(carried).filter(|carried| carried.lower.is_finite());
                 (found.is_searched, found.evaluations) = (true, found.evaluations + spent);
                 return Ok(());
             }
             spent += found.evaluations;
+            if !carried.followers.is_empty() {
+                self.memory.names = before;
+            }
         }
         let manifold = self.manifold(poses, settings, limits, workspace)?;
         let found = &mut self.found;

@@ -340,6 +340,8 @@ impl<const D: usize> Track<D> {
         if followed > found.separation.upper && followed > deepest(&by_gradients) {
             // The bodies are proven to overlap deeper: nothing would push them apart that far.
             (found.contacts, self.memory.history) = (by_gradients, History::default());
+        } else if let Some(slop) = settings.solver_slop {
+            found.regroup(settings, slop);
         }
         Ok(found)
     }

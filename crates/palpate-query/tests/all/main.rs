@@ -32,6 +32,7 @@ mod recall_motions;
 mod sampled;
 mod serde;
 mod solver_contacts;
+mod standing;
 mod sweeps;
 mod thin;
 mod thin_parts;
