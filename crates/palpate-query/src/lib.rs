@@ -28,7 +28,8 @@
 //! - [`separation`] bounds how far two bodies are apart, or how much they overlap;
 //!   [`overlap`] decides whether they do; [`manifold`] finds the contacts that span the
 //!   region in which they touch; [`penetration`] bounds how far one must move to leave
-//!   the other. [`Track`] follows a pair that moves, [`World`] many bodies.
+//!   the other. [`Track`] follows a pair that moves, [`World`] many bodies;
+//!   [`Track::contacts`] finds the contacts of a solver.
 //! - [`any_point`] decides whether a shape has any point.
 //! - [`evaluate_point`] evaluates a field at a point; [`contact_ball`] bounds how deep a ball
 //!   is in it, [`touches_ball`] decides whether it touches; [`cast_ray`] finds the first

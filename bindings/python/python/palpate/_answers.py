@@ -477,6 +477,8 @@ class Contact(_examples.Contact):
             a contact that lasts keeps its id from step to step. So it does at a tool of ``palpate-haptics``, where the
             id is ``body << 32 | point``, of a body and a point of the tool's shell. Elsewhere the id is the contact's
             index in the answer.
+        age: For how many steps before this one a ``Track`` or a ``World`` has had this contact: zero for a new one,
+            and for those that nothing follows.
 
     >>> import palpate as pp
     >>> touch = pp.closest_points(pp.ball(0.5), pp.ball(0.5).translated([2, 0, 0])).best
@@ -491,6 +493,7 @@ class Contact(_examples.Contact):
     on_surfaces: bool
     gap: float
     id: int
+    age: int
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -529,6 +532,8 @@ class Contacts(_examples.Contacts):
             a contact that lasts keeps its id from step to step. So it does at a tool of ``palpate-haptics``, where the
             id is ``body << 32 | point``, of a body and a point of the tool's shell. Elsewhere the id is the contact's
             index in the answer.
+        age: For how many steps before this one a ``Track`` or a ``World`` has had this contact: zero for a new one,
+            and for those that nothing follows.
 
     >>> import palpate as pp
     >>> touch = pp.manifold(pp.cuboid([1, 1, 1]), pp.ball(0.5).translated([0, 0.99, 0])).contacts
@@ -543,3 +548,4 @@ class Contacts(_examples.Contacts):
     on_surfaces: NDArray[np.bool_]
     gap: Floats
     id: NDArray[np.uint64]
+    age: NDArray[np.uint64]
