@@ -364,7 +364,10 @@ fn swallowed<const D: usize>(
 }
 
 /// A vector square to both, in space; in the plane there is none.
-fn square_to<const D: usize>(a: Vector<f64, D>, b: Vector<f64, D>) -> Option<Vector<f64, D>> {
+pub(super) fn square_to<const D: usize>(
+    a: Vector<f64, D>,
+    b: Vector<f64, D>,
+) -> Option<Vector<f64, D>> {
     (D == 3).then(|| a.in_space().cross(b.in_space()).truncated())
 }
 

@@ -207,7 +207,7 @@ pub(crate) struct Polish<const D: usize> {
 }
 
 /// A touch next to `touch` where the gap is least, if there is one within its [`reach`] along the surface
-/// between. `None` where the bodies do not face each other as they did. What is `known` is renewed.
+/// between. `None` where the bodies no longer face each other as they did. The function updates `known`.
 pub(crate) fn polished<const D: usize>(
     pair: &mut BodyPair<'_, D>,
     touch: &Touch<D>,

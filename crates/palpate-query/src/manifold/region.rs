@@ -225,8 +225,8 @@ impl<const D: usize> RegionSearch<'_, '_, D> {
         Stop::Unresolved
     }
 
-    /// Why a search of boxes for thin parts ends, of which none is left: bodies that overlap far from all
-    /// candidates, or where the contacts leave it out, touch there, too.
+    /// Why a search for thin parts ends that has no box left. It is unresolved if the bodies overlap at a
+    /// place that is far from all candidates, or that the contacts leave out.
     fn with_overlaps(&self, near: Near<'_, D>, coarse: &ManifoldSettings) -> Stop {
         let far = SEEDED * coarse.spacing;
         let is_open = |p: &Point<D>| {

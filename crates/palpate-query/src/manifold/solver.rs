@@ -10,6 +10,7 @@
 use palpate_field::{Point, Vector};
 
 use super::ManifoldSettings;
+use super::patch::square_to;
 use crate::contact::Contact;
 
 /// The cosine of how far normals of a group are from that of its deepest contact, 5°.
@@ -211,6 +212,5 @@ fn take<const D: usize>(
 
 /// The unit vector square to a side of a patch, along the patch.
 fn across<const D: usize>(side: Vector<f64, D>, normal: Vector<f64, D>) -> Vector<f64, D> {
-    let across: Vector<f64, D> = side.in_space().cross(normal.in_space()).truncated();
-    across.normalized().unwrap_or(Vector::ZERO)
+    square_to(side, normal).and_then(Vector::normalized).unwrap_or(Vector::ZERO)
 }

@@ -171,14 +171,14 @@ impl<const D: usize> Carried<D> {
         if self.spacing != settings.spacing || more {
             return false;
         }
-        let root = pair.root(self.searched);
-        let now = &pair.second_from_frame;
-        let moved = displacement(&self.found_at, now, &root);
+        let moved = self.moved(pair);
         if self.followers.is_empty() {
             return moved <= self.searched - settings.margin;
         }
         let limit = (self.searched - settings.margin).min((FARTHER - 1.0) * settings.margin);
-        let is_at_rest = displacement(&self.last_at, now, &root) <= AT_REST * settings.margin;
+        let step =
+            displacement(&self.last_at, &pair.second_from_frame, &pair.root(self.searched));
+        let is_at_rest = step <= AT_REST * settings.margin;
         moved <= if is_at_rest { limit.min(SETTLED * settings.margin) } else { limit }
     }
 
@@ -264,11 +264,11 @@ impl<const D: usize> Track<D> {
     /// The contacts of both shapes at these poses for a solver, `world_from_body`, as
     /// [`ManifoldSettings::for_solver`] describes them, with lasting ids and ages.
     ///
-    /// A step searches only where the proof of an earlier search has ended: where the bodies have moved, since
-    /// then, by more than half the margin. Until then contacts are carried with the bodies and polished, for a
-    /// few evaluations each. No contact within the margin is missed: its gap was within 1.5
-    /// margins at the search. Where bodies overlap by more than the margin, each step is one of
-    /// [`manifold`](Self::manifold), with its history.
+    /// A search finds the region of contact up to 1.5 margins. It lasts until the bodies have moved by half a
+    /// margin, or have come to rest elsewhere. Until then no part of the region is new. A step moves the
+    /// contacts with the bodies and polishes them, for a few evaluations each. Another point of a patch may
+    /// become the deepest meanwhile: the next search finds it. Where bodies overlap by more than the margin, each
+    /// step is one of [`manifold`](Self::manifold), with its history.
     ///
     /// The margin may change from step to step; a smaller one asks for no search. Equal calls from the first
     /// one on give equal contacts, ids and ages. The answer lies in memory of the track that the next step
@@ -392,7 +392,7 @@ impl<const D: usize> Track<D> {
         Ok(())
     }
 
-    /// Ends to carry contacts: their names and sides are kept for the next search.
+    /// Stops carrying contacts. The next search knows their names and sides.
     pub(super) fn put_down(&mut self) {
         let Some(carried) = self.memory.carried.take() else { return };
         let second = carried.last_at;

@@ -59,9 +59,9 @@ impl<const D: usize> History<D> {
         }
     }
 
-    /// Gives deep contacts whose normals are not those with which they came in the normals and gaps of
-    /// their history, and returns how often fields were evaluated. What was deep when it was seen first
-    /// has no history until it comes out.
+    /// Turns deep contacts back to the sides on which they came in: they get normals and gaps from their
+    /// history. Returns how often fields were evaluated. A contact that is deep when it is first seen has no
+    /// history until it comes out.
     pub(super) fn follow(
         &mut self,
         contacts: &mut [Contact<D>],
