@@ -187,7 +187,7 @@ struct Pressing {
 }
 
 /// What a contact point touched in the tick before: its contact, body and motion.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 struct Before {
     contact: bool,
     body: u32,
@@ -555,7 +555,10 @@ impl ContactPoint {
         if body.has_moved() {
             touch.velocity -= (body.carried(touch.device) - touch.device) * rate;
         }
-        self.tell_changes(tick, touch, before, &Crease::of_one(touch.body, touch.normal));
+        // A tick that changes nothing has nothing to tell.
+        if self.crease.count() > 0 || Before::of(touch) != before {
+            self.tell_changes(tick, touch, before, &Crease::of_one(touch.body, touch.normal));
+        }
         self.release_others();
         let stretch = touch.proxy - touch.device;
         self.proxy.hold(stretch - touch.normal * stretch.dot(touch.normal));

@@ -248,7 +248,12 @@ impl<'a> Nearby<'a> {
 
     /// The error of the field at points at most `extent` from the origin [m].
     pub(crate) fn rounding_within(&self, extent: f64) -> f64 {
-        self.all().map(|(_, body)| body.rounding_within(extent)).fold(0.0, f64::max)
+        match self.only() {
+            Some(body) => body.rounding_within(extent),
+            None => {
+                self.all().map(|(_, body)| body.rounding_within(extent)).fold(0.0, f64::max)
+            }
+        }
     }
 
     /// Whether all bodies are planar shapes.
