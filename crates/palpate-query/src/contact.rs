@@ -25,7 +25,8 @@ pub enum NormalSource {
     ThickerBody,
     /// The normal of the contact in earlier steps, which began when the bodies did not overlap by more
     /// than the margin: a [`Track`](crate::Track) or a [`World`](crate::World) has followed them from
-    /// there.
+    /// there. Of bodies that were first seen deeper in each other, the normal at the end of a short
+    /// translation that separates them.
     History,
     /// No field gives a direction there: the line between the bodies' centres, or the y axis.
     Assumed,

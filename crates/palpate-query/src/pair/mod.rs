@@ -23,8 +23,8 @@ use crate::sampler::Placed;
 
 pub(crate) use body_pair::BodyPair;
 pub use distance_bound::{DistanceBound, minimax_step};
-pub(crate) use penetration::penetration_of;
 pub use penetration::{Penetration, penetration};
+pub(crate) use penetration::{penetration_of, way_out};
 pub(crate) use rates::rates_of;
 pub use rates::{PoseDerivative, Rates, rates};
 pub(crate) use search::PairSearch;

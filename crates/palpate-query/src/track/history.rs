@@ -27,6 +27,8 @@ const REMEMBERED: u32 = 10;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct History<const D: usize> {
     known: Vec<KnownContact<D>>,
+    /// Whether a way out of this overlap was searched for.
+    has_looked: bool,
 }
 
 /// A contact of the last step, its points and normal in the coordinates of the first body and of the
@@ -42,6 +44,25 @@ pub(super) struct KnownContact<const D: usize> {
 }
 
 impl<const D: usize> History<D> {
+    /// Whether a contact overlaps by more than the margin, and nothing says from where the bodies came. It is
+    /// told once in each overlap.
+    pub(super) fn is_first_deep(&mut self, contacts: &[Contact<D>], margin: f64) -> bool {
+        let is_deep = contacts.iter().any(|contact| contact.gap < -margin);
+        let is_first = is_deep && self.known.is_empty() && !self.has_looked;
+        self.has_looked = is_deep && (self.has_looked || is_first);
+        is_first
+    }
+
+    /// Takes these contacts as those with which the bodies came.
+    pub(super) fn came_from(&mut self, outside: Vec<KnownContact<D>>) {
+        self.known = outside;
+    }
+
+    /// Forgets where the bodies came from: they overlap deeper than that explains.
+    pub(super) fn refute(&mut self) {
+        self.known.clear();
+    }
+
     /// Takes these as the contacts of the last step. Those that were there before stay for a while.
     pub(super) fn replace(&mut self, known: impl Iterator<Item = KnownContact<D>>) {
         let mut known: Vec<_> = known.collect();
@@ -60,8 +81,7 @@ impl<const D: usize> History<D> {
     }
 
     /// Turns deep contacts back to the sides on which they came in: they get normals and gaps from their
-    /// history. Returns how often fields were evaluated. A contact that is deep when it is first seen has no
-    /// history until it comes out.
+    /// history. Returns how often fields were evaluated.
     pub(super) fn follow(
         &mut self,
         contacts: &mut [Contact<D>],
@@ -98,7 +118,7 @@ impl<const D: usize> History<D> {
                     );
                     let Some(touch) = found else { continue };
                     let followed = touch.contact(&pair, settings.spacing);
-                    *contact = followed.with_id(contact.id);
+                    *contact = Contact { id: contact.id, age: contact.age, ..followed };
                 }
             }
             known.push(KnownContact {

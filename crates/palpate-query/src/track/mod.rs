@@ -4,6 +4,7 @@
 //! Two bodies followed from step to step.
 
 mod contacts;
+mod first_seen;
 mod history;
 mod kept;
 mod names;
@@ -22,6 +23,7 @@ use crate::query::{size, smallest};
 use crate::sampler::Placed;
 use contacts::Carried;
 pub use contacts::TrackedContacts;
+use first_seen::contacts_outside;
 use history::History;
 use kept::Kept;
 use names::Names;
@@ -296,7 +298,9 @@ impl<const D: usize> Track<D> {
     /// While the bodies stay within a quarter of the margin of the poses at which the region of contact
     /// was searched, its points are carried with them and put back on the surfaces, and only the
     /// separation is searched. A contact that overlaps deeper than the margin keeps the normal with which
-    /// it came, unless the contacts would then all be shallower than the separation is proven to be. Parts of the region that are new meanwhile have a gap of more than three
+    /// it came, unless the contacts would then all be shallower than the separation is proven to be. Bodies
+    /// that are first seen deeper than the margin in each other push each other as if they had come along a
+    /// short translation that separates them. That translation is searched for once. Parts of the region that are new meanwhile have a gap of more than three
     /// quarters of the margin. Of bodies that move on by no more than 1.5 margins in a step, parts up to a
     /// gap of 2.5 margins are searched too, and all last while the bodies stay within 1.5 margins of those
     /// poses. Where the bodies face each other no longer at a point as they did, all is found anew.
@@ -331,6 +335,13 @@ impl<const D: usize> Track<D> {
         };
         self.memory.names.name(&mut found.contacts, poses, settings.spacing);
         let by_gradients = found.contacts.clone();
+        let history = &mut self.memory.history;
+        if history.is_first_deep(&found.contacts, settings.margin) {
+            let (shapes, settings) = (&self.shapes, (settings, limits));
+            let (outside, spent) = contacts_outside(shapes, poses, settings, workspace)?;
+            found.separation.evaluations = found.separation.evaluations.saturating_add(spent);
+            history.came_from(outside);
+        }
         found.separation.evaluations +=
             self.memory.history.follow(&mut found.contacts, pair, poses, settings);
         let deepest = |contacts: &[Contact<D>]| {
@@ -339,7 +350,8 @@ impl<const D: usize> Track<D> {
         let followed = deepest(&found.contacts);
         if followed > found.separation.upper && followed > deepest(&by_gradients) {
             // The bodies are proven to overlap deeper: nothing would push them apart that far.
-            (found.contacts, self.memory.history) = (by_gradients, History::default());
+            found.contacts = by_gradients;
+            self.memory.history.refute();
         } else if let Some(slop) = settings.solver_slop {
             found.regroup(settings, slop);
         }

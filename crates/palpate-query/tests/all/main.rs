@@ -9,6 +9,7 @@ mod ball_sweeps;
 mod balls;
 mod carried;
 mod common_surfaces;
+mod deep_starts;
 mod degenerate;
 mod drops;
 mod element_sweeps;

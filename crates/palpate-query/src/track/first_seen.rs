@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The palpate authors
+// SPDX-License-Identifier: MIT OR Apache-2.0
+
+//! Bodies that are deep in each other when they are first seen.
+//!
+//! No step before says on which side they came in. So a short translation that separates them decides: their
+//! contacts are those at its end, as if the second body had come from there.
+
+use palpate_field::{Pose, Shape};
+
+use super::history::KnownContact;
+use crate::certified::Limits;
+use crate::error::QueryError;
+use crate::manifold::{ManifoldSettings, manifold};
+use crate::pair::{PairWorkspace, way_out};
+use crate::sampler::Placed;
+
+/// The contacts at the end of a translation that separates the bodies, in the coordinates of each; none if no
+/// such translation was found. The number says how often fields were evaluated.
+#[inline(never)]
+pub(super) fn contacts_outside<const D: usize>(
+    [a, b]: &[Shape<D>; 2],
+    poses: [Pose<D>; 2],
+    (settings, limits): (&ManifoldSettings, &Limits),
+    workspace: &mut PairWorkspace<D>,
+) -> Result<(Vec<KnownContact<D>>, u32), QueryError> {
+    let placed = [Placed::new(a, poses[0]), Placed::new(b, poses[1])];
+    let (way, spent) = way_out(placed, limits, workspace)?;
+    let Some((direction, length)) = way else { return Ok((Vec::new(), spent)) };
+    let mut outside = poses[1];
+    outside.translation += direction * length;
+    let found = manifold(placed[0], Placed::new(b, outside), settings, limits, workspace)?;
+    let into = [poses[0].inverse(), outside.inverse()];
+    let known = found.contacts.iter().map(|contact| KnownContact {
+        id: contact.id,
+        points: [
+            into[0].transform_point(contact.point_a),
+            into[1].transform_point(contact.point_b),
+        ],
+        normals: into.map(|into| into.transform_vector(contact.normal)),
+        missed: 0,
+    });
+    Ok((known.collect(), spent.saturating_add(found.separation.evaluations)))
+}
