@@ -25,10 +25,11 @@ pub(super) fn contacts_outside<const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<(Vec<KnownContact<D>>, u32), QueryError> {
     let placed = [Placed::new(a, poses[0]), Placed::new(b, poses[1])];
-    let (way, spent) = way_out(placed, limits, workspace)?;
-    let Some((direction, length)) = way else { return Ok((Vec::new(), spent)) };
+    let way = way_out(placed, limits, workspace)?;
+    let spent = way.evaluations;
+    let Some(direction) = way.best.direction else { return Ok((Vec::new(), spent)) };
     let mut outside = poses[1];
-    outside.translation += direction * length;
+    outside.translation += direction * way.upper;
     let found = manifold(placed[0], Placed::new(b, outside), settings, limits, workspace)?;
     let into = [poses[0].inverse(), outside.inverse()];
     let known = found.contacts.iter().map(|contact| KnownContact {

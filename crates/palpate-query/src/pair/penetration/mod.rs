@@ -118,27 +118,27 @@ pub(crate) fn penetration_of<const D: usize>(
     }
 }
 
-/// A short translation of the second body after which bodies that overlap are proven not to: its direction in
-/// world coordinates and its length [m]. `None` if none was found. The number says how often fields were
-/// evaluated.
-///
-/// It is the upper bound of [`penetration`]. Nothing is spent on a proof that no shorter one does.
+/// As [`penetration`], but of bodies for which that would search over translations it gives the translation of the
+/// first search. Its lower bound is the diameter of the largest common ball: nothing is spent on a better one.
 pub(crate) fn way_out<const D: usize>(
     placed: [Placed<'_, D>; 2],
     limits: &Limits,
     workspace: &mut PairWorkspace<D>,
-) -> Result<(Option<(Vector<f64, D>, f64)>, u32), QueryError> {
+) -> Result<Certified<Penetration<D>>, QueryError> {
     let [a, b] = placed;
     let pair = BodyPair::new(a, b)?;
     if placed.iter().any(is_open) {
-        return Ok((None, 0));
+        return Ok(answer([0.0, 0.0], None, Stop::SignKnown, 0));
     }
     if let Some(found) = of_supports(&pair, placed, limits, workspace) {
-        let direction = found.best.direction;
-        return Ok((direction.map(|direction| (direction, found.upper)), found.evaluations));
+        return Ok(found);
     }
-    let (way_out, _) = search_around(&pair, placed, limits, workspace)?;
-    Ok((way_out.best, way_out.evaluations))
+    let (way_out, here) = search_around(&pair, placed, limits, workspace)?;
+    let (direction, upper) = match way_out.best {
+        Some((direction, length)) => (Some(direction), length),
+        None => (None, f64::INFINITY),
+    };
+    Ok(answer([-here.upper, upper], direction, Stop::BudgetSpent, way_out.evaluations))
 }
 
 /// Whether a body has no interior.
