@@ -467,17 +467,35 @@ impl<const D: usize> Boxes<D> {
 
     /// Calls `visit` with the groups of eight elements, by number, whose boxes share a point with a box.
     pub(crate) fn overlapping(&self, around: &Aabb<D>, mut visit: impl FnMut(usize)) {
-        let mut waiting = vec![(self.levels.len() - 1, 0)];
-        while let Some((level, group)) = waiting.pop() {
+        let _all = self.try_overlapping(around, |group| {
+            visit(group);
+            Some(())
+        });
+    }
+
+    /// The same until `visit` returns `None`: then so does this.
+    pub(crate) fn try_overlapping(
+        &self,
+        around: &Aabb<D>,
+        mut visit: impl FnMut(usize) -> Option<()>,
+    ) -> Option<()> {
+        let mut waiting = [(0, 0); MOST_LEVELS * FAN];
+        waiting[0] = (self.levels.len() - 1, 0);
+        let mut count = 1;
+        while count > 0 {
+            count -= 1;
+            let (level, group) = waiting[count];
             for i in self.levels[level].overlapping(around, group) {
                 let node = group * FAN + i;
                 if level == 0 {
-                    visit(node);
+                    visit(node)?;
                 } else {
-                    waiting.push((level - 1, node));
+                    waiting[count] = (level - 1, node);
+                    count += 1;
                 }
             }
         }
+        Some(())
     }
 }
 

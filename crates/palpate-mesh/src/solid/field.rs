@@ -14,10 +14,11 @@ use palpate_field::{
     Vector,
 };
 
-use super::planes::{Corner, Middle};
+use super::planes::{Corner, MOST_FACES, Middle, feet, highest_within};
 use super::winding::{Winding, WindingTree, share};
 use super::{MOST_GROUPS, OPERATIONS, Ordered, Signs, Solid, SolidError, Surface};
 use crate::mesh::Mesh;
+use crate::tree::FAN;
 
 /// The least cosine, of about 80°, between the first normal and any other with which a cell that the surface passes gets
 /// a model, unless the normals are few.
@@ -25,6 +26,9 @@ const LEAST_COSINE: f64 = 0.17;
 
 /// The same where the winding number tells the sign.
 const LEAST_COSINE_OF_SIGNS: f64 = 0.5 + 1e-9;
+
+/// A model by normals is taken if its remainder is at most this share of another's.
+const FLATTER: f64 = 0.75;
 
 impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
     fn distance(&self, p: Point<D>) -> f64 {
@@ -67,7 +71,7 @@ impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
         }
         let nearest = self.surface.nearest(centre, None);
         let (f, gradient) = self.at_foot(centre, &nearest);
-        let middle = Middle { centre, radius, rounding, f, gradient, foot: nearest.1.point };
+        let middle = Middle { centre, radius, rounding, f, gradient };
         let distance = f.abs();
         let model = if distance <= radius + rounding {
             let lipschitz = AffineModel::lipschitz(f, 1.0, cell, rounding);
@@ -88,7 +92,8 @@ impl<const N: usize, const D: usize> CustomField<D> for Solid<N, D> {
             }
         };
         let model = self.model_of_plane(cell, &middle, &model).unwrap_or(model);
-        self.model_of_sides(cell, &middle, &model).unwrap_or(model)
+        let model = self.model_of_sides(cell, &middle, &model).unwrap_or(model);
+        self.model_of_normals(cell, &middle, &model).unwrap_or(model)
     }
 
     /// The vertices and faces as they were mended, of which all else follows.
@@ -129,66 +134,63 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         rounding: f64,
     ) -> Option<AffineModel<M>> {
         let centre = Vector(cell.map(|x| x.value));
-        let sides: [Vector<f64, D>; M] =
-            std::array::from_fn(|k| Vector(cell.map(|x| x.gradient[k])));
         let farthest = f.abs() + 2.0 * radius + rounding;
         let (reach, least_cosine) = match self.signs {
             None => (farthest, LEAST_COSINE),
             Some(_) => (2.0 * farthest * (1.0 + 1e-9), LEAST_COSINE_OF_SIGNS),
         };
-        let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; M];
-        // The first normal, and the least cosine of another with it.
-        let mut first: Option<Vector<f64, D>> = None;
-        let mut corner = Corner::new();
-        let (mut least, mut groups, mut is_known) = (1.0_f64, 0, true);
+        let mut slopes = Slopes::of(cell);
+        let (mut groups, mut is_known) = (0, true);
         let mut walk = self.surface.boxes.from(centre);
         while let Some(group) = walk.next(reach * reach) {
             groups += 1;
             for (face, is_nearest) in self.surface.faces.near(group, centre, [reach, farthest])
             {
-                let (normal, error) = self.normals.of_face(face);
-                let cosine = first.get_or_insert(normal).dot(normal) - 2.0 * error;
-                corner.take(normal, error);
-                let is_of_corner = self.signs.is_none() && corner.shortest() > LEAST_COSINE;
-                is_known &= cosine > least_cosine || is_of_corner;
-                if !is_nearest {
-                    continue;
-                }
-                least = least.min(cosine);
-                for (range, side) in ranges.iter_mut().zip(&sides) {
-                    let (along, error) = (normal.dot(*side), error * side.norm());
-                    *range = [range[0].min(along - error), range[1].max(along + error)];
-                }
+                let (cosine, is_of_corner) =
+                    slopes.take(self.normals.of_face(face), is_nearest);
+                is_known &= cosine > least_cosine || self.signs.is_none() && is_of_corner;
             }
-            let width: f64 = ranges.iter().map(|[low, high]| 0.5 * (high - low)).sum();
-            if !is_known || groups > MOST_GROUPS || width > radius {
+            if !is_known || groups > MOST_GROUPS || slopes.width() > radius {
                 return None;
             }
         }
-        let first = first?;
-        if !self.are_surface(centre, first * (2.0 * farthest)) {
+        if !self.are_surface(centre, slopes.first? * (2.0 * farthest)) {
             return None;
         }
-        let mut model = AffineModel { value: f, gradient: [0.0; M], lower: 0.0, upper: 0.0 };
-        // A mean of the normals is at least as long as its component along the first, so as the least cosine.
-        let least = least.max(corner.shortest());
-        if least <= LEAST_COSINE {
+        slopes.model(cell, f, rounding)
+    }
+
+    /// The same model, of the faces that may be nearest as another model of the field bounds their distance: it is for
+    /// cells that one does not prove to be outside. `None` if it says not much more, or the winding number tells the
+    /// sign.
+    fn model_of_normals<const M: usize>(
+        &self,
+        cell: &[AffineModel<M>; D],
+        middle: &Middle<D>,
+        model: &AffineModel<M>,
+    ) -> Option<AffineModel<M>> {
+        let Middle { centre, radius, rounding, f, .. } = *middle;
+        if self.signs.is_some() || f < -radius || model.minimum() > 0.0 {
             return None;
         }
-        let longest = 1.0 / least;
-        let mut remainder = 0.0;
-        let with_sides = ranges.into_iter().zip(&sides);
-        for (([low, high], side), gradient) in with_sides.zip(&mut model.gradient) {
-            let most = side.norm();
-            let low = low.min(low * longest).max(-most);
-            let high = high.max(high * longest).min(most);
-            *gradient = 0.5 * (low + high);
-            remainder += 0.5 * (high - low) + 2.0 * f64::EPSILON * (low.abs() + high.abs());
-        }
-        let own: f64 = cell.iter().map(|x| x.lower.max(x.upper)).sum();
-        remainder = (remainder + own) * (1.0 + 16.0 * f64::EPSILON) + rounding;
-        (model.lower, model.upper) = (remainder, remainder);
-        Some(model)
+        let feet = feet(cell, middle, model);
+        let mut slopes = Slopes::of(cell);
+        let mut faces = 0;
+        self.surface.boxes.try_overlapping(&feet, |group| {
+            for (face, _) in self.surface.faces.near(group, centre, [f.abs() + 2.0 * radius; 2])
+            {
+                let corners = self.surface.faces.corners(face);
+                if highest_within(&feet, corners, centre, Vector::ZERO) < 0.0 {
+                    continue;
+                }
+                let (cosine, is_of_corner) = slopes.take(self.normals.of_face(face), true);
+                (cosine > LEAST_COSINE || is_of_corner).then_some(())?;
+            }
+            faces += FAN;
+            (faces <= MOST_FACES && slopes.width() <= FLATTER * model.lower).then_some(())
+        })?;
+        let found = slopes.model(cell, f, rounding)?;
+        (found.lower < FLATTER * model.lower).then_some(found)
     }
 
     /// Whether all faces in the ball of half the length of `across` bound the solid. The normals of all faces in the ball
@@ -209,6 +211,82 @@ impl<const N: usize, const D: usize> Solid<N, D> {
             (found.number - number).abs() + found.error < 0.5
         };
         is(centre - across, 1.0) && is(centre + across, 0.0)
+    }
+}
+
+/// The slopes of the field along the sides of a cell, by the normals of the faces that may be nearest.
+struct Slopes<const M: usize, const D: usize> {
+    sides: [Vector<f64, D>; M],
+    /// Of the components of the normals along the sides.
+    ranges: [[f64; 2]; M],
+    first: Option<Vector<f64, D>>,
+    /// The least cosine of another normal with the first.
+    least: f64,
+    corner: Corner<D>,
+}
+
+impl<const M: usize, const D: usize> Slopes<M, D> {
+    /// Of no normals yet.
+    fn of(cell: &[AffineModel<M>; D]) -> Self {
+        Self {
+            sides: std::array::from_fn(|k| Vector(cell.map(|x| x.gradient[k]))),
+            ranges: [[f64::INFINITY, f64::NEG_INFINITY]; M],
+            first: None,
+            least: 1.0,
+            corner: Corner::new(),
+        }
+    }
+
+    /// Takes a normal, which is known to an error, into the ranges if its face may be nearest. Returns its cosine with the
+    /// first, and whether all so far are those of a corner.
+    #[inline]
+    fn take(
+        &mut self,
+        (normal, error): (Vector<f64, D>, f64),
+        is_nearest: bool,
+    ) -> (f64, bool) {
+        let cosine = self.first.get_or_insert(normal).dot(normal) - 2.0 * error;
+        self.corner.take(normal, error);
+        if is_nearest {
+            self.least = self.least.min(cosine);
+            for (range, side) in self.ranges.iter_mut().zip(&self.sides) {
+                let (along, error) = (normal.dot(*side), error * side.norm());
+                *range = [range[0].min(along - error), range[1].max(along + error)];
+            }
+        }
+        (cosine, self.corner.shortest() > LEAST_COSINE)
+    }
+
+    /// What the ranges add to a remainder, at least [m].
+    fn width(&self) -> f64 {
+        self.ranges.iter().map(|[low, high]| 0.5 * (high - low)).sum()
+    }
+
+    /// The model with the value `f` at the centre; `None` if the normals are too different.
+    fn model(
+        &self,
+        cell: &[AffineModel<M>; D],
+        f: f64,
+        rounding: f64,
+    ) -> Option<AffineModel<M>> {
+        let mut model = AffineModel { value: f, gradient: [0.0; M], lower: 0.0, upper: 0.0 };
+        // A mean of the normals is at least as long as its component along the first, so as the least cosine.
+        let least = self.least.max(self.corner.shortest());
+        self.first.filter(|_| least > LEAST_COSINE)?;
+        let longest = 1.0 / least;
+        let mut remainder = 0.0;
+        let with_sides = self.ranges.into_iter().zip(&self.sides);
+        for (([low, high], side), gradient) in with_sides.zip(&mut model.gradient) {
+            let most = side.norm();
+            let low = low.min(low * longest).max(-most);
+            let high = high.max(high * longest).min(most);
+            *gradient = 0.5 * (low + high);
+            remainder += 0.5 * (high - low) + 2.0 * f64::EPSILON * (low.abs() + high.abs());
+        }
+        let own: f64 = cell.iter().map(|x| x.lower.max(x.upper)).sum();
+        remainder = (remainder + own) * (1.0 + 16.0 * f64::EPSILON) + rounding;
+        (model.lower, model.upper) = (remainder, remainder);
+        Some(model)
     }
 }
 

@@ -7,7 +7,7 @@
 //! half-space. This holds however large the cell is and however many faces the flat side has.
 
 use palpate_field::scalar::AffineModel;
-use palpate_field::{Point, Vector};
+use palpate_field::{Aabb, Point, Vector};
 
 use super::field::foot;
 use super::{MOST_GROUPS, Solid};
@@ -16,18 +16,14 @@ use crate::tree::FAN;
 /// A plane is taken if its remainder is at most this share of the other model's: its upper one is larger, at most twice.
 const SHARE: f64 = 0.5;
 
-/// How far beyond the nearest point it is asked on which side of the surface the plane's far side is, in radii of the
-/// cell. The faces within two radii are known.
-const BEYOND: f64 = 1.5;
-
 /// Another plane is taken if the cell is at most this share as far below it.
 const LESS_DEEP: f64 = 0.75;
 
 /// A plane is looked for between a cell and at most this many faces near it.
-const MOST_FACES: usize = MOST_GROUPS * FAN;
+pub(super) const MOST_FACES: usize = MOST_GROUPS * FAN;
 
 /// The most directions in which all faces are looked at.
-const MOST_DIRECTIONS: usize = 8;
+const MOST_DIRECTIONS: usize = 12;
 
 /// The centre of a cell, and the field there.
 pub(super) struct Middle<const D: usize> {
@@ -38,21 +34,20 @@ pub(super) struct Middle<const D: usize> {
     pub(super) rounding: f64,
     pub(super) f: f64,
     pub(super) gradient: Vector<f64, D>,
-    /// The nearest point of the surface.
-    pub(super) foot: Point<D>,
 }
 
 impl<const N: usize, const D: usize> Solid<N, D> {
     /// A model that is at least twice as close below as another: the height over a plane square to the gradient `n` at
     /// the centre, above which no near face rises. `None` if there is none.
     ///
-    /// Near is what is in the ball `B` about the centre whose radius is `|f|` there and two radii of the cell. Let all
-    /// of the surface in `B` be at `n·q ≤ c`, and what is in `B` beyond this plane be outside. Then the field is at least
-    /// `n·p − c` at each point `p` of the cell:
+    /// Near is what is in a [`Region`] about the cell. Let all of the surface in it be at `n·q ≤ c`, let what is in it
+    /// beyond this plane be outside, and let no point of the cell be farther from the plane than the region reaches
+    /// beyond the cell: above it all around, and below it along `n`. Then the field is at least `n·p − c` at each point `p` of the cell:
     ///
-    /// - Outside, with `q` nearest to `p`, the distance is `|p − q| ≥ n·(p − q) ≥ n·p − c`.
+    /// - Outside, with `q` nearest to `p`, either `q` is in the region, and the distance is
+    ///   `|p − q| ≥ n·(p − q) ≥ n·p − c`; or it is farther than the region reaches, so farther than the plane.
     /// - Inside, the way from `p` along `n` leaves the solid at the plane or before. If the surface were farther than
-    ///   `c − n·p`, the end of the way would be within the solid, and in `B`.
+    ///   `c − n·p`, the end of the way would be within the solid, and in the region.
     ///
     /// No face need be nearest, and none need bound the solid: the sign changes at faces alone.
     pub(super) fn model_of_plane<const M: usize>(
@@ -61,44 +56,174 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         middle: &Middle<D>,
         model: &AffineModel<M>,
     ) -> Option<AffineModel<M>> {
-        let Middle { radius, rounding, f, gradient: normal, foot, .. } = *middle;
-        let (gradient, _) = reach(cell, normal);
+        let Middle { rounding, f, gradient: normal, .. } = *middle;
         let own: f64 = cell.iter().map(|x| x.lower.max(x.upper)).sum();
         // Once for the field and once for the plane.
         let error = 2.0 * rounding + own * (1.0 + 16.0 * f64::EPSILON);
-        let most = (SHARE * model.lower - error).min(radius);
-        let rise = (most > 0.0).then(|| self.rise(middle, most)).flatten()?;
-        let is_beyond = f > rise + rounding || {
-            let beyond = foot + normal * (BEYOND * radius);
-            self.at(beyond, &mut None).0 > rounding
-        };
+        let region = Region::along(cell, middle, normal);
+        let most = (SHARE * model.lower - error).min(region.farthest + f);
+        let least = (most > 0.0).then_some(f - most)?;
+        let height = self.height(middle, &region, normal, least)?;
+        let rise = (f - height).max(0.0);
+        let is_beyond =
+            f > rise + rounding || self.is_outside_beyond(middle, &region, (f - rise, normal));
+        let (gradient, _) = reach(cell, normal);
         let between: f64 =
             gradient.iter().zip(model.gradient).map(|(a, b)| (a - b).abs()).sum();
         let upper = (model.upper + between) * (1.0 + 16.0 * f64::EPSILON) + rounding;
         is_beyond.then_some(AffineModel { value: f, gradient, lower: rise + error, upper })
     }
 
-    /// How far the near faces rise above the plane through the nearest point of the surface, square to the gradient [m];
-    /// `None` if that is more than `most`, or there are too many.
-    fn rise(&self, middle: &Middle<D>, most: f64) -> Option<f64> {
-        let Middle { centre, radius, rounding, f, gradient, .. } = *middle;
-        let reach = f.abs() + 2.0 * radius + rounding;
-        let (mut rise, mut groups) = (0.0_f64, 0);
-        let mut walk = self.surface.boxes.from(centre);
-        while let Some(group) = walk.next(reach * reach) {
-            groups += 1;
-            for (face, _) in self.surface.faces.near(group, centre, [reach; 2]) {
+    /// The height of the centre over the plane square to a direction above which no face in a region rises [m]; `None`
+    /// if it is less than `least`, or too many faces are near.
+    fn height(
+        &self,
+        middle: &Middle<D>,
+        region: &Region<D>,
+        direction: Vector<f64, D>,
+        least: f64,
+    ) -> Option<f64> {
+        let Middle { centre, .. } = *middle;
+        let (mut height, mut faces) = (region.farthest, 0);
+        self.surface.boxes.try_overlapping(&region.aabb, |group| {
+            for (face, _) in self.surface.faces.near(group, centre, [region.reach; 2]) {
                 let corners = self.surface.faces.corners(face);
-                rise = rise.max(f + highest(corners, centre, gradient));
+                if -highest(corners, centre, direction) < height {
+                    let inside = highest_within(&region.aabb, corners, centre, direction);
+                    height = height.min(-inside);
+                }
             }
+            faces += FAN;
             // Written so that NaN is none.
-            if !(groups <= MOST_GROUPS && rise <= most) {
-                return None;
-            }
-        }
-        (rise <= most).then_some(rise)
+            (faces <= MOST_FACES && height >= least).then_some(())
+        })?;
+        Some(height)
+    }
+
+    /// Whether the far end of a region along a direction is outside, and with it all of the region that is beyond a plane
+    /// at this height under the centre: if no face rises above the plane, the sign is the same all over.
+    fn is_outside_beyond(
+        &self,
+        middle: &Middle<D>,
+        region: &Region<D>,
+        (height, direction): (f64, Vector<f64, D>),
+    ) -> bool {
+        let Middle { centre, rounding, .. } = *middle;
+        let end = region.end + direction * region.beyond;
+        height + direction.dot(end - centre) > rounding && self.at(end, &mut None).0 > rounding
     }
 }
+
+/// What is near a cell: all that is in a ball about its centre, and in a box about it.
+struct Region<const D: usize> {
+    /// It holds all within the largest height of the cell's points over the plane, and the ways from them along the
+    /// direction to the plane.
+    aabb: Aabb<D>,
+    /// The radius of the ball: the centre's distance to the surface and two radii of the cell [m].
+    reach: f64,
+    /// A plane may be so far from the centre [m].
+    farthest: f64,
+    /// The cell's last point along the direction, and how far the region goes on from there at least [m].
+    end: Point<D>,
+    beyond: f64,
+}
+
+impl<const D: usize> Region<D> {
+    /// That for planes square to a direction.
+    fn along<const M: usize>(
+        cell: &[AffineModel<M>; D],
+        middle: &Middle<D>,
+        direction: Vector<f64, D>,
+    ) -> Self {
+        let Middle { centre, radius, rounding, f, .. } = *middle;
+        let (sides, extent) = reach(cell, direction);
+        let farthest = f.abs() + extent;
+        let along = farthest + extent;
+        let mut aabb = around(cell, middle, (f + extent).max(0.0));
+        for k in 0..D {
+            let shift = direction[k] * along * (1.0 + 16.0 * f64::EPSILON);
+            aabb.min[k] += shift.min(0.0);
+            aabb.max[k] += shift.max(0.0);
+        }
+        let end = centre
+            + Vector(std::array::from_fn(|k| {
+                cell[k].gradient.iter().zip(sides).map(|(x, side)| x * side.signum()).sum()
+            }));
+        Self {
+            aabb,
+            reach: f.abs() + 2.0 * radius + rounding,
+            farthest,
+            end,
+            beyond: along.min(f.abs() + radius) * (1.0 - 1e-9),
+        }
+    }
+}
+
+/// A box around all points at most so far from a cell [m].
+pub(super) fn around<const M: usize, const D: usize>(
+    cell: &[AffineModel<M>; D],
+    middle: &Middle<D>,
+    grown: f64,
+) -> Aabb<D> {
+    let half: Vector<f64, D> = Vector(cell.map(|x| {
+        let along: f64 = x.gradient.iter().map(|side| side.abs()).sum();
+        (along + x.lower.max(x.upper) + grown) * (1.0 + 16.0 * f64::EPSILON)
+            + 4.0 * middle.rounding
+    }));
+    Aabb { min: middle.centre - half, max: middle.centre + half }
+}
+
+/// A box around all nearest points of a cell's points, as a model bounds their distance.
+pub(super) fn feet<const M: usize, const D: usize>(
+    cell: &[AffineModel<M>; D],
+    middle: &Middle<D>,
+    model: &AffineModel<M>,
+) -> Aabb<D> {
+    let most = model.maximum().max(-model.minimum()) + middle.rounding;
+    around(cell, middle, most.min(middle.f.abs() + middle.radius))
+}
+
+/// The largest height over a point, along a direction, of the part of a face that is in a box [m]; minus infinity if none
+/// is.
+///
+/// Roundings move a cut by less than the box is wider than it need be.
+pub(super) fn highest_within<const N: usize, const D: usize>(
+    aabb: &Aabb<D>,
+    corners: &[Point<D>; N],
+    p: Point<D>,
+    along: Vector<f64, D>,
+) -> f64 {
+    let mut part = [corners[0]; MOST_CORNERS];
+    part[..N].copy_from_slice(corners);
+    let mut count = N;
+    for (k, side) in (0..D).flat_map(|k| [(k, -1.0), (k, 1.0)]) {
+        let end = if side < 0.0 { -aabb.min[k] } else { aabb.max[k] };
+        let beyond = |q: Point<D>| side * q[k] - end;
+        if part[..count].iter().all(|q| beyond(*q) <= 0.0) {
+            continue;
+        }
+        let (whole, corners) = (part, count);
+        count = 0;
+        for i in 0..corners {
+            let (from, to) = (whole[i], whole[(i + 1) % corners]);
+            let [before, after] = [from, to].map(beyond);
+            if before <= 0.0 {
+                part[count] = from;
+                count += 1;
+            }
+            if (before <= 0.0) != (after <= 0.0) {
+                part[count] = from + (to - from) * (before / (before - after));
+                count += 1;
+            }
+        }
+    }
+    let heights = part[..count].iter().map(|q| along.dot(*q - p));
+    heights.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// A triangle that is cut at the six sides of a box has at most one corner more for each; a segment that is cut counts as
+/// a polygon of two sides, each cut twice at most.
+const MOST_CORNERS: usize = 12;
 
 impl<const N: usize, const D: usize> Solid<N, D> {
     /// A model by planes square to normals of near faces, for a cell that another model does not prove to be outside;
@@ -128,7 +253,18 @@ impl<const N: usize, const D: usize> Solid<N, D> {
             let upper = radius * (1.0 + 16.0 * f64::EPSILON) + rounding;
             return Some(AffineModel { value: f, gradient: [0.0; M], lower, upper });
         }
-        self.model_of_side(cell, middle, model, (&near, &directions))
+        let feet = feet(cell, middle, model);
+        let mut directions = Directions::new();
+        directions.add(cell, gradient);
+        for face in near.faces() {
+            let face = *face as usize;
+            let corners = self.surface.faces.corners(face);
+            if highest_within(&feet, corners, centre, Vector::ZERO) >= 0.0 {
+                directions.add(cell, self.normals.of_face(face).0);
+            }
+        }
+        directions.add_between(cell);
+        self.model_of_side(cell, middle, model, &directions)
     }
 
     /// How far a cell that is outside is from each near face, along directions [m]; `None` if it may not be apart from
@@ -165,34 +301,23 @@ impl<const N: usize, const D: usize> Solid<N, D> {
         cell: &[AffineModel<M>; D],
         middle: &Middle<D>,
         model: &AffineModel<M>,
-        (near, directions): (&Near, &Directions<D>),
+        directions: &Directions<D>,
     ) -> Option<AffineModel<M>> {
-        let Middle { centre, radius, rounding, f, .. } = *middle;
-        // Many directions are those of a curved side, where none tells more.
-        if directions.count == MOST_DIRECTIONS {
-            return None;
-        }
+        let Middle { rounding, f, .. } = *middle;
         let mut best = (LESS_DEEP * model.minimum(), None);
         for (direction, extent) in &directions.all[..directions.count] {
-            let mut height = f64::INFINITY;
-            for face in near.faces() {
-                let corners = self.surface.faces.corners(*face as usize);
-                height = height.min(-highest(corners, centre, *direction));
-                if height - extent <= best.0 {
-                    break;
-                }
-            }
-            if height - extent > best.0 {
-                best = (height - extent, Some((height, *direction)));
+            let region = Region::along(cell, middle, *direction);
+            let least = (best.0 + extent).max(-region.farthest);
+            let height = self.height(middle, &region, *direction, least);
+            if let Some(height) = height.filter(|height| height - extent > best.0) {
+                best = (height - extent, Some((height, *direction, region)));
             }
         }
-        let (height, direction) = best.1?;
+        let (height, direction, region) = best.1?;
         let is_beyond = if height > rounding {
             f > 0.0
         } else {
-            let far = 0.5 * radius - height;
-            let is_near = far <= f.abs() + BEYOND * radius;
-            is_near && self.at(centre + direction * far, &mut None).0 > rounding
+            self.is_outside_beyond(middle, &region, (height, direction))
         };
         let (gradient, _) = reach(cell, direction);
         let own: f64 = cell.iter().map(|x| x.lower.max(x.upper)).sum();
@@ -252,6 +377,19 @@ impl<const D: usize> Directions<D> {
         if has_room && !self.all[..self.count].iter().any(is_known) {
             self.all[self.count] = (direction, reach(cell, direction).1);
             self.count += 1;
+        }
+    }
+
+    /// Adds those between two of them: along a groove, the plane that leans on both of its sides is the closest.
+    fn add_between<const M: usize>(&mut self, cell: &[AffineModel<M>; D]) {
+        let first = self.count;
+        for i in 0..first {
+            for k in i + 1..first {
+                let sum = self.all[i].0 + self.all[k].0;
+                if let Some(between) = sum.normalized() {
+                    self.add(cell, between);
+                }
+            }
         }
     }
 

@@ -318,3 +318,73 @@ fn meshes_that_touch_touch_at_their_time() {
     let found = swept([&hole, &peg], way, Pose::identity()).unwrap();
     assert!(touches_at(&found, 0.5, 5e-4), "{found:?}");
 }
+
+/// A block with a hole of so many sides, whose corners are `HOLE` from the axis.
+fn hole_of(corners: u32) -> Result<Shape<3>> {
+    solid(&Soup::pierced_prism(corners, [0.02, HOLE], 0.05))
+}
+
+/// A peg of so many sides, whose corners are as far from the axis as a share of those of the hole.
+fn peg_of(corners: u32, share: f64) -> Result<Shape<3>> {
+    solid(&Soup::prism(corners, HOLE * share, 0.05))
+}
+
+/// How far the sides of a regular polygon are from its middle, as a share of how far its corners are.
+fn flat(corners: u32) -> f64 {
+    (PI / f64::from(corners)).cos()
+}
+
+/// Between parallel sides of a hole and a peg in it a box is free however large it is; where two sides of the hole meet,
+/// boxes were as small as the gap and as many as the budget.
+#[test]
+fn a_peg_goes_into_a_hole_of_as_many_sides() {
+    for corners in [12, 48] {
+        let (hole, peg) = (hole_of(corners).unwrap(), peg_of(corners, 0.99).unwrap());
+        let found = swept([&hole, &peg], down(Pose::identity()), Pose::identity()).unwrap();
+        let is_soon = found.evaluations < 1_000_000;
+        assert_eq!((found.touches(), is_soon), (Some(false), true), "{corners}: {found:?}");
+    }
+}
+
+/// The peg is within the circle that touches the sides of the hole.
+#[test]
+fn a_peg_turns_as_it_goes_into_a_hole() {
+    for (corners, angle) in [(12, 0.1), (48, 0.03)] {
+        let hole = hole_of(corners).unwrap();
+        let peg = peg_of(corners, 0.99 * flat(corners)).unwrap();
+        let way = [at([0.0, 0.06, 0.0]), about_y(angle).unwrap()];
+        let found = swept([&hole, &peg], way, Pose::identity()).unwrap();
+        assert_eq!(found.touches(), Some(false), "{corners}: {found:?}");
+    }
+}
+
+/// At 2 mrad about its middle the ends of a peg of 50 mm are 50 µm aside, of 106 to 110 µm.
+#[test]
+fn a_peg_goes_into_a_hole_a_little_tilted() {
+    for corners in [12, 48] {
+        let hole = hole_of(corners).unwrap();
+        let peg = peg_of(corners, 0.99 * flat(corners)).unwrap();
+        let tilt = Rotation::from_axis_angle([1.0, 0.0, 0.0], 2e-3).unwrap();
+        let tilted = at([0.0, 0.025, 0.0]) * Pose::rotation(tilt) * at([0.0, -0.025, 0.0]);
+        let found = swept([&hole, &peg], down(tilted), Pose::identity()).unwrap();
+        assert_eq!(found.touches(), Some(false), "{corners}: {found:?}");
+    }
+}
+
+#[test]
+fn pegs_that_do_not_fit_touch_at_their_time() {
+    for corners in [12, 48] {
+        // One 1 % too wide goes down by 10 of 60 mm to the rim.
+        let (hole, wide) = (hole_of(corners).unwrap(), peg_of(corners, 1.01).unwrap());
+        let found = swept([&hole, &wide], down(Pose::identity()), Pose::identity()).unwrap();
+        assert!(touches_at(&found, 1.0 / 6.0, 1e-6), "{corners}: {found:?}");
+        // One that fits goes aside by twice the clearance on its way: at half of it, it is at the wall.
+        let peg = peg_of(corners, 0.99).unwrap();
+        let [from, to] = [0.04, 0.0].map(|y| at([0.0, y, 0.0]));
+        let (sine, cosine) = (PI / f64::from(corners)).sin_cos();
+        let along = Vector([cosine, 0.0, sine]) * (0.02 * HOLE * flat(corners));
+        let way = [from, to * Pose::translation(along)];
+        let found = swept([&hole, &peg], way, Pose::identity()).unwrap();
+        assert!(touches_at(&found, 0.5, 5e-4), "{corners}: {found:?}");
+    }
+}
