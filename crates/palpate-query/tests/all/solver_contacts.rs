@@ -209,6 +209,17 @@ fn a_pair_at_rest_costs_few_evaluations_and_no_allocation() {
     }
 }
 
+/// Poses of a cube that slides, sinks and tilts on a floor.
+#[cfg(feature = "serde")]
+fn poses_of_a_cube() -> impl Iterator<Item = [Pose<3>; 2]> {
+    (0..200).map(|step| {
+        let t = f64::from(step);
+        let tilt = Rotation::from_axis_angle([0.0, 0.0, 1.0], 2e-5 * t).unwrap();
+        let place = Vector([2e-4 * t, 0.0499 + 2e-6 * t, 1e-4 * t]);
+        [Pose::identity(), Pose::new(tilt, place)]
+    })
+}
+
 fn floor_and_cube() -> [Shape<3>; 2] {
     let floor = Shape::<3>::half_space([0.0, 1.0, 0.0], 0.0).unwrap();
     [floor, Shape::<3>::cuboid([0.1; 3]).unwrap()]
