@@ -11,7 +11,7 @@
 use palpate_field::{Point, Pose};
 
 use super::history::KnownContact;
-use super::names::{Named, Names};
+use super::names::{Named, Names, TURNED};
 use super::{Track, displacement};
 use crate::certified::Limits;
 use crate::contact::Contact;
@@ -95,9 +95,10 @@ pub(super) struct Carried<const D: usize> {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Follower<const D: usize> {
-    /// As the search found it, and in the last step.
+    /// As the search found it, in the last step, and in the step under way, which may fail.
     found: Touch<D>,
     last: Touch<D>,
+    now: Touch<D>,
     is_deepest: bool,
     id: u64,
     /// For how many steps before the last one the solver had it; `None` if it had not in the last one.
@@ -152,6 +153,7 @@ impl<const D: usize> Follower<D> {
         let followers = touches().zip(contacts).enumerate().map(|(i, (touch, contact))| Self {
             found: touch,
             last: touch,
+            now: touch,
             is_deepest: i == 0,
             id: contact.id,
             age: contact.age.checked_sub(1),
@@ -160,6 +162,11 @@ impl<const D: usize> Follower<D> {
         });
         followers.collect()
     }
+}
+
+/// Whether a contact has turned too far to be the same one.
+fn is_turned<const D: usize>(now: &Touch<D>, last: &Touch<D>) -> bool {
+    now.normal.dot(last.normal) <= TURNED
 }
 
 impl<const D: usize> Carried<D> {
@@ -206,6 +213,23 @@ impl<const D: usize> Carried<D> {
         displacement(&self.found_at, &pair.second_from_frame, &pair.root(self.searched))
     }
 
+    /// Gives new ids to contacts whose normals the polish has turned too far from those of the last step.
+    fn rename_turned(
+        &mut self,
+        contacts: &mut [Contact<D>],
+        names: &mut Names<D>,
+        before: &Names<D>,
+    ) {
+        for follower in &mut self.followers {
+            let now = (follower.id, follower.last.normal);
+            let Some(new) = names.new_if_turned(before, now) else { continue };
+            for contact in contacts.iter_mut().filter(|contact| contact.id == follower.id) {
+                (contact.id, contact.age) = (new, 0);
+            }
+            (follower.id, follower.age) = (new, follower.age.map(|_| 0));
+        }
+    }
+
     /// Moves the contacts with the bodies and chooses those of the solver. `false` if one of them is lost, or
     /// the bodies overlap by more than the margin.
     fn follow(
@@ -228,10 +252,15 @@ impl<const D: usize> Carried<D> {
                 continue;
             };
             follower.edge = edge;
-            if contact.gap < -settings.margin {
+            // The solver's normal: where no polish succeeds it is not that of the touch.
+            let mut touch = touch;
+            touch.normal = contact.normal;
+            let is_lost =
+                follower.age.is_some() && !is_new && is_turned(&touch, &follower.last);
+            if contact.gap < -settings.margin || is_lost {
                 return false;
             }
-            follower.last = touch;
+            follower.now = touch;
             if contact.gap <= settings.margin {
                 let contact = contact.placed(&pair.world_from_frame).with_id(follower.id);
                 let is_held = follower.age.is_some();
@@ -244,6 +273,7 @@ impl<const D: usize> Carried<D> {
         let chosen = (&mut into.contacts, &mut into.groups);
         choose(&mut into.offers, settings, slop, chosen);
         for follower in &mut self.followers {
+            follower.last = follower.now;
             let mut contacts = into.contacts.iter_mut();
             let contact = contacts.find(|contact| contact.id == follower.id);
             follower.age = contact.map(|contact| {
@@ -370,9 +400,14 @@ impl<const D: usize> Track<D> {
             spent += separated.pair.evaluations;
             let found = &mut self.found;
             if carried.follow(&mut separated.pair, settings, slop, found) {
-                // Without a bound there is nothing that lasts.
-                self.memory.carried = Some(carried).filter(|carried| carried.lower.is_finite());
+                carried.rename_turned(&mut found.contacts, &mut self.memory.names, &before);
                 (found.is_searched, found.evaluations) = (true, found.evaluations + spent);
+                let is_bounded = carried.lower.is_finite();
+                self.memory.carried = Some(carried);
+                if !is_bounded {
+                    // Nothing lasts, but the names do.
+                    self.put_down();
+                }
                 return Ok(());
             }
             spent += found.evaluations;

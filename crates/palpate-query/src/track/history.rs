@@ -66,75 +66,87 @@ impl<const D: usize> History<D> {
     /// Takes these as the contacts of the last step. Those that were there before stay for a while.
     pub(super) fn replace(&mut self, known: impl Iterator<Item = KnownContact<D>>) {
         let mut known: Vec<_> = known.collect();
-        self.keep_lost(&mut known);
-        self.known = known;
-    }
-
-    /// Appends the contacts that are lost since a few steps at most.
-    fn keep_lost(&self, known: &mut Vec<KnownContact<D>>) {
         for lost in &self.known {
             let is_there = known.iter().any(|contact| contact.id == lost.id);
             if !is_there && lost.missed < REMEMBERED {
                 known.push(KnownContact { missed: lost.missed + 1, ..*lost });
             }
         }
+        self.known = known;
+    }
+
+    /// Takes those of these contacts whose sides are known as the contacts of the last step.
+    pub(super) fn remember(
+        &mut self,
+        contacts: &[Contact<D>],
+        are_known: &[bool],
+        poses: [Pose<D>; 2],
+    ) {
+        let from_world = poses.map(|pose| pose.inverse());
+        let known = contacts.iter().zip(are_known).filter(|(_, is_known)| **is_known);
+        self.replace(known.map(|(contact, _)| KnownContact {
+            id: contact.id,
+            missed: 0,
+            points: [
+                from_world[0].transform_point(contact.point_a),
+                from_world[1].transform_point(contact.point_b),
+            ],
+            normals: from_world.map(|from_world| from_world.transform_vector(contact.normal)),
+        }));
     }
 
     /// Turns deep contacts back to the sides on which they came in: they get normals and gaps from their
-    /// history. Returns how often fields were evaluated.
+    /// history. Returns of which contacts the side is known, and how often fields were evaluated.
     pub(super) fn follow(
-        &mut self,
+        &self,
         contacts: &mut [Contact<D>],
         pair: BodyPair<'_, D>,
         poses: [Pose<D>; 2],
         settings: &ManifoldSettings,
-    ) -> u32 {
+    ) -> (Vec<bool>, u32) {
         let mut pair = pair;
         pair.evaluations = 0;
-        let from_world = poses.map(|pose| pose.inverse());
-        let mut known = Vec::with_capacity(contacts.len());
-        for contact in contacts {
-            if contact.gap < -settings.margin {
-                let Some((last, apart)) = self.nearest(contact, poses) else { continue };
-                let normals = [0, 1].map(|i| poses[i].transform_vector(last.normals[i]));
-                let points = [0, 1].map(|i| poses[i].transform_point(last.points[i]));
-                // How deep the points are that touched, by how they have moved past each other.
-                let carried = (points[1] - points[0]).dot(normals[0]);
-                let is_other_side =
-                    normals.iter().all(|normal| normal.dot(contact.normal) < SAME_SIDE);
-                if is_other_side || contact.gap > SHALLOW * carried {
-                    let far = NEAR * (settings.spacing - contact.gap.min(carried));
-                    // Where no field gives a direction, the place says as little.
-                    if apart > far && contact.normal_from != NormalSource::Assumed {
-                        continue;
-                    }
-                    // The frame of the pair is the first body.
-                    let frame = &from_world[0];
-                    let found = followed(
-                        &mut pair,
-                        points.map(|p| frame.transform_point(p)),
-                        normals.map(|normal| frame.transform_vector(normal)),
-                        settings,
-                    );
-                    let Some(touch) = found else { continue };
-                    let followed = touch.contact(&pair, settings.spacing);
-                    *contact = Contact { id: contact.id, age: contact.age, ..followed };
-                }
+        let are_known = contacts
+            .iter_mut()
+            .map(|contact| {
+                contact.gap >= -settings.margin
+                    || self.turn_back(contact, &mut pair, poses, settings).is_some()
+            })
+            .collect();
+        (are_known, pair.evaluations)
+    }
+
+    /// Turns a deep contact back to the side on which it came in. `None` if that is not known.
+    fn turn_back(
+        &self,
+        contact: &mut Contact<D>,
+        pair: &mut BodyPair<'_, D>,
+        poses: [Pose<D>; 2],
+        settings: &ManifoldSettings,
+    ) -> Option<()> {
+        let (last, apart) = self.nearest(contact, poses)?;
+        let normals = [0, 1].map(|i| poses[i].transform_vector(last.normals[i]));
+        let points = [0, 1].map(|i| poses[i].transform_point(last.points[i]));
+        // How deep the points are that touched, by how they have moved past each other.
+        let carried = (points[1] - points[0]).dot(normals[0]);
+        let is_other_side = normals.iter().all(|normal| normal.dot(contact.normal) < SAME_SIDE);
+        if is_other_side || contact.gap > SHALLOW * carried {
+            let far = NEAR * (settings.spacing - contact.gap.min(carried));
+            // Where no field gives a direction, the place says as little.
+            if apart > far && contact.normal_from != NormalSource::Assumed {
+                return None;
             }
-            known.push(KnownContact {
-                id: contact.id,
-                missed: 0,
-                points: [
-                    from_world[0].transform_point(contact.point_a),
-                    from_world[1].transform_point(contact.point_b),
-                ],
-                normals: from_world
-                    .map(|from_world| from_world.transform_vector(contact.normal)),
-            });
+            // The frame of the pair is the first body.
+            let frame = poses[0].inverse();
+            let touch = followed(
+                pair,
+                points.map(|p| frame.transform_point(p)),
+                normals.map(|normal| frame.transform_vector(normal)),
+                settings,
+            )?;
+            *contact = touch.contact(pair, settings.spacing);
         }
-        self.keep_lost(&mut known);
-        self.known = known;
-        pair.evaluations
+        Some(())
     }
 
     /// The contact of the last step that is nearest on either body, and how far it is [m].

@@ -333,26 +333,32 @@ impl<const D: usize> Track<D> {
                 workspace,
             )
         };
-        self.memory.names.name(&mut found.contacts, poses, settings.spacing);
         let by_gradients = found.contacts.clone();
-        let history = &mut self.memory.history;
+        let TrackMemory { names, history, .. } = &mut self.memory;
+        let separation = &mut found.separation;
         if history.is_first_deep(&found.contacts, settings.margin) {
             let (shapes, settings) = (&self.shapes, (settings, limits));
             let (outside, spent) = contacts_outside(shapes, poses, settings, workspace)?;
-            found.separation.evaluations = found.separation.evaluations.saturating_add(spent);
+            separation.evaluations = separation.evaluations.saturating_add(spent);
             history.came_from(outside);
         }
-        found.separation.evaluations +=
-            self.memory.history.follow(&mut found.contacts, pair, poses, settings);
+        let (are_known, spent) = history.follow(&mut found.contacts, pair, poses, settings);
+        separation.evaluations = separation.evaluations.saturating_add(spent);
         let deepest = |contacts: &[Contact<D>]| {
             contacts.iter().fold(f64::INFINITY, |least, contact| contact.gap.min(least))
         };
         let followed = deepest(&found.contacts);
-        if followed > found.separation.upper && followed > deepest(&by_gradients) {
-            // The bodies are proven to overlap deeper: nothing would push them apart that far.
+        // The bodies may be proven to overlap deeper: nothing would push them apart that far.
+        if followed > separation.upper && followed > deepest(&by_gradients) {
             found.contacts = by_gradients;
-            self.memory.history.refute();
-        } else if let Some(slop) = settings.solver_slop {
+            names.name(&mut found.contacts, poses, settings.spacing);
+            history.refute();
+            return Ok(found);
+        }
+        // Named by the normals that they have now.
+        names.name(&mut found.contacts, poses, settings.spacing);
+        history.remember(&found.contacts, &are_known, poses);
+        if let Some(slop) = settings.solver_slop {
             found.regroup(settings, slop);
         }
         Ok(found)

@@ -12,7 +12,7 @@ use crate::manifold::distance;
 const SAME: f64 = 2.0;
 
 /// The cosine of how far its normal may turn, 45°.
-const TURNED: f64 = 0.7;
+pub(super) const TURNED: f64 = 0.7;
 
 /// The contacts of the last step, and where they were on both bodies.
 #[derive(Clone, Debug, Default)]
@@ -39,6 +39,22 @@ impl<const D: usize> Names<D> {
     pub(super) fn replace(&mut self, known: impl Iterator<Item = Named<D>>) {
         self.known.clear();
         self.known.extend(known);
+    }
+
+    /// A new id if the contact with this id turned too far since the last step, to a `normal` in the first
+    /// body's coordinates. `before` are the contacts of the last step.
+    pub(super) fn new_if_turned(
+        &mut self,
+        before: &Self,
+        (id, normal): (u64, Vector<f64, D>),
+    ) -> Option<u64> {
+        let old = before.known.iter().find(|old| old.id == id)?;
+        if normal.dot(old.normal) > TURNED {
+            return None;
+        }
+        let new = self.next;
+        self.next += 1;
+        Some(new)
     }
 
     /// Gives each contact the id of the nearest contact of the last step, or a new id; and its age. Near

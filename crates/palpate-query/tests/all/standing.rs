@@ -4,6 +4,7 @@
 //! What a solver needs of bodies that stand, tilt and start deep in each other.
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
+use palpate_field::kernel::RegularStar;
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_query::{
     Limits, Manifold, ManifoldSettings, PairWorkspace, Placed, Track, TrackedContacts, manifold,
@@ -218,5 +219,34 @@ fn contacts_of_a_tilted_plate_reach_as_far_as_the_margin() {
         let far =
             found.contacts.iter().map(|it| it.point_b[0]).fold(f64::NEG_INFINITY, f64::max);
         assert!(!found.is_whole || far > -0.02 - 0.12, "{tolerance}: {far}");
+    }
+}
+
+/// An id that lasts is one of a contact that has not turned: what a solver keeps by it acts along the
+/// normal.
+#[test]
+fn no_contact_keeps_its_id_when_its_normal_turns() {
+    let star = Shape::from_kernel(RegularStar::new(5, 0.12, 0.06).unwrap());
+    let own = ManifoldSettings::for_solver(Track::new(star.clone(), star.clone()).size());
+    for settings in [own, ManifoldSettings { margin: 0.0265, ..own }] {
+        let ways = (0..6).map(|i| (0.02 * f64::from(i), 0.35 * f64::from(i)));
+        for (height, angle) in ways {
+            let poses: Vec<_> = (0..240)
+                .map(|step| {
+                    let s = f64::from(step) / 240.0;
+                    let turn = Rotation::from_angle(angle + s).unwrap();
+                    Pose::new(turn, [0.3 - 0.6 * s, 0.15 - height])
+                })
+                .collect();
+            let found = steps([&star, &star], &poses, &settings);
+            for (step, pair) in found.windows(2).enumerate() {
+                for now in &pair[1].contacts {
+                    let before = pair[0].contacts.iter().find(|last| last.id == now.id);
+                    let Some(before) = before else { continue };
+                    let cosine = now.normal.dot(before.normal);
+                    assert!(cosine > 0.69, "step {step}: {before:?} {now:?}");
+                }
+            }
+        }
     }
 }
