@@ -28,8 +28,8 @@ const AS_DEEP: f64 = 1e-3;
 /// less.
 const ONE: f64 = 0.25;
 
-/// A contact of the step before counts as farther out by this factor, so that equal contacts do not take
-/// turns.
+/// The measure of a contact that the solver had in the last step is multiplied by this factor. Otherwise equally
+/// good contacts would alternate from step to step.
 const HELD: f64 = 1.1;
 
 /// A contact that a solver may get.
@@ -174,7 +174,13 @@ fn spread<const D: usize>(
     let second = patch[1].place();
     let side = across(second - first, normal);
     if !next(patch, 2, &|offer| (offer.place() - first).dot(side).abs()) {
-        return 2;
+        // Of a line the middle may carry and the ends not yet: each end beyond the two holds it too.
+        let (line, along) = (second - first, (second - first).normalized());
+        let beyond = |offer: &Offer<D>| {
+            let far = along.map_or(0.0, |along| (offer.place() - first).dot(along));
+            (-far).max(far - line.norm())
+        };
+        return if next(patch, 2, &beyond) { 3 } else { 2 };
     }
     let corners = [first, second, patch[2].place()];
     let turn = if (corners[2] - first).dot(side) > 0.0 { -1.0 } else { 1.0 };

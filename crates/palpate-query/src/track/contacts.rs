@@ -5,7 +5,8 @@
 //!
 //! A solver needs to know once that no contact is missed, and then where the contacts are. So a region is
 //! searched up to a gap beyond the margin. A motion that moves no point by more than δ changes no gap
-//! by more than δ: while the bodies stay within the difference, no part of the region is new. Its contacts
+//! by more than δ. While the bodies have moved by less than what the search went beyond the margin, every part
+//! of the region within the margin is known. Its contacts
 //! move with the bodies, and Newton's method puts each where the gap is least.
 
 use palpate_field::{Point, Pose};
@@ -24,18 +25,20 @@ use crate::pair::PairWorkspace;
 use crate::pair::body_pair::BodyPair;
 use crate::sampler::Placed;
 
-/// The region is searched up to so many margins.
+/// A search covers gaps up to this many margins.
 const FARTHER: f64 = 1.5;
 
-/// Bodies that move by less than this share of the margin in a step are at rest. Their contacts last while they
-/// are within the other share of where they were searched.
+/// Bodies that move by at most this share of the margin in a step are at rest.
 const AT_REST: f64 = 1e-4;
+
+/// Bodies at rest are searched again if they have moved by more than this share of the margin since the search.
 const SETTLED: f64 = 0.02;
 
 /// The slop of settings without one, as a share of the margin.
 const SLOP: f64 = 0.2;
 
-/// Contacts hide depth if the bodies are proven to overlap deeper by more than this share of the margin.
+/// The contacts are rejected if the fields prove a gap that is smaller than that of every contact by more than
+/// this share of the margin.
 const HIDDEN: f64 = 0.05;
 
 /// Places to which both bodies carry a contact are one if they differ by less than this share of the
@@ -294,16 +297,23 @@ impl<const D: usize> Track<D> {
     /// The contacts of both shapes at these poses for a solver, `world_from_body`, as
     /// [`ManifoldSettings::for_solver`] describes them, with lasting ids and ages.
     ///
-    /// A search finds the region of contact up to 1.5 margins. It lasts until the bodies have moved by half a
-    /// margin, or have come to rest elsewhere. Until then no part of the region is new. A step moves the
+    /// A search finds the region of contact up to a gap of 1.5 margins. The track uses this region until the
+    /// bodies have moved by half a margin since the search. If the bodies come to rest at other poses than
+    /// those of the search, the track searches there once more. Until then no part of the region is new. A step moves the
     /// contacts with the bodies and polishes them, for a few evaluations each. Another point of a patch may
     /// become the deepest meanwhile: the next search finds it. Where bodies overlap by more than the margin, each
     /// step is one of [`manifold`](Self::manifold), with its history.
     ///
     /// The margin may change from step to step; a smaller one asks for no search. Equal calls from the first
-    /// one on give equal contacts, ids and ages. The answer lies in memory of the track that the next step
-    /// uses again: a step without a search does not allocate. Without a slop in the settings it is a
+    /// one on give equal contacts, ids and ages. The returned reference points into the track; the next call
+    /// overwrites it. A step without a search does not allocate. If `solver_slop` is `None`, the slop is a
     /// fifth of the margin.
+    ///
+    /// Choose a margin of at least the distance by which the bodies approach in a step, plus
+    /// [`ManifoldSettings::for_solver`]'s own: a body that comes faster is first seen deep. A contact enters
+    /// at the margin, so an age of zero does not say that the bodies touch: compare `gap` with the slop.
+    /// A contact keeps its id only while its normal turns by less than 45° in a step. Ids are those of one
+    /// track.
     ///
     /// ```
     /// use palpate_field::{Pose, Shape, Vector};

@@ -12,11 +12,12 @@ use crate::pair::body_pair::BodyPair;
 /// The cosine of how far the normal of a contact may be from that of the step before, 45°.
 const SAME_SIDE: f64 = 0.7;
 
-/// A contact that is less deep than this share of what its history says came out of another side.
+/// If a contact is less deep than this share of the depth that its history gives, its gradient points to another
+/// side.
 const SHALLOW: f64 = 0.5;
 
-/// A contact takes the side of the one of the step before that is nearest, up to this many spacings and
-/// times its depth.
+/// A contact takes the side of the nearest contact of the last step. That contact is at most this many times the
+/// sum of spacing and depth away.
 const NEAR: f64 = 2.0;
 
 /// A contact that is lost is remembered for so many steps.
@@ -44,8 +45,8 @@ pub(super) struct KnownContact<const D: usize> {
 }
 
 impl<const D: usize> History<D> {
-    /// Whether a contact overlaps by more than the margin, and nothing says from where the bodies came. It is
-    /// told once in each overlap.
+    /// Whether a contact is deeper than the margin and there is no history. It is `true` at most once in an
+    /// overlap.
     pub(super) fn is_first_deep(&mut self, contacts: &[Contact<D>], margin: f64) -> bool {
         let is_deep = contacts.iter().any(|contact| contact.gap < -margin);
         let is_first = is_deep && self.known.is_empty() && !self.has_looked;

@@ -38,8 +38,8 @@ const FAR: f64 = 1.5;
 /// A proof to the tolerance may last where a pair moves by no more than this share of it.
 const LITTLE: f64 = 0.05;
 
-/// After a proof that did not last for a step, so many searches are for their steps alone, and twice as
-/// many each time.
+/// If a search for several steps served none of the later steps, this many searches are for one step each.
+/// Each further failure doubles the number.
 const ALONE: u32 = 8;
 
 /// A pair of shapes that moves: each step starts from what the last search proved.
@@ -79,7 +79,8 @@ pub struct Track<const D: usize> {
 /// What a [`Track`] remembers of earlier steps, without its shapes: a snapshot of it.
 ///
 /// A track of the same shapes that begins with it goes on as the other did, to the last bit. With the feature
-/// `serde` it can be stored.
+/// `serde` it can be stored, in a format that keeps every bit of a number: `serde_json` needs its feature
+/// `float_roundtrip`.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TrackMemory<const D: usize> {
@@ -171,7 +172,8 @@ impl<const D: usize> Track<D> {
         smallest(self.shapes.each_ref().map(size))
     }
 
-    /// Forgets all bounds: the next search begins anew. Contacts keep their ids.
+    /// Forgets all bounds and the sides on which contacts came in: the next search begins anew. Contacts keep
+    /// their ids. Call it when a body was placed elsewhere.
     pub fn forget(&mut self) {
         self.put_down();
         let TrackMemory { known, kept, history, .. } = &mut self.memory;
@@ -295,15 +297,18 @@ impl<const D: usize> Track<D> {
     /// [`manifold`](crate::manifold) finds them, with lasting ids: a contact near one of the
     /// last step, on either body, keeps its `id`.
     ///
-    /// While the bodies stay within a quarter of the margin of the poses at which the region of contact
-    /// was searched, its points are carried with them and put back on the surfaces, and only the
-    /// separation is searched. A contact that overlaps deeper than the margin keeps the normal with which
-    /// it came, unless the contacts would then all be shallower than the separation is proven to be. Bodies
-    /// that are first seen deeper than the margin in each other push each other as if they had come along a
-    /// short translation that separates them. That translation is searched for once. Parts of the region that are new meanwhile have a gap of more than three
-    /// quarters of the margin. Of bodies that move on by no more than 1.5 margins in a step, parts up to a
-    /// gap of 2.5 margins are searched too, and all last while the bodies stay within 1.5 margins of those
-    /// poses. Where the bodies face each other no longer at a point as they did, all is found anew.
+    /// While the bodies stay within a quarter of the margin of the poses of a search, a step carries the
+    /// contacts with the bodies and puts them back on the surfaces. Only the separation is searched. A part
+    /// of the region that such a step does not see has a gap of more than three quarters of the margin. If
+    /// the bodies no longer face each other at the place of a carried contact, the region is searched anew.
+    ///
+    /// Bodies that move by at most 1.5 margins in a step are searched up to a gap of 2.5 margins. The
+    /// contacts then last while the bodies stay within 1.5 margins of the poses of that search.
+    ///
+    /// A contact that overlaps deeper than the margin keeps the normal with which it came, unless the
+    /// contacts would then all be shallower than the separation is proven to be. If two bodies overlap by
+    /// more than the margin when the track first sees them, the track searches once for a short translation
+    /// that separates them. The contacts push as if the second body had come along it.
     ///
     /// # Errors
     ///

@@ -4,6 +4,8 @@
 //! What a solver needs of bodies that stand, tilt and start deep in each other.
 #![expect(clippy::unwrap_used, reason = "these are tests")]
 
+use std::f64::consts::TAU;
+
 use palpate_field::kernel::RegularStar;
 use palpate_field::{Pose, Rotation, Shape, Vector};
 use palpate_query::{
@@ -248,5 +250,25 @@ fn no_contact_keeps_its_id_when_its_normal_turns() {
                 }
             }
         }
+    }
+}
+
+/// The middle of the line may carry before its ends do.
+#[test]
+fn a_cylinder_that_lies_is_held_at_both_of_its_ends() {
+    let cylinder = Shape::<3>::cylinder(0.05, 0.2).unwrap();
+    let settings = ManifoldSettings::for_solver(Track::new(floor(), cylinder.clone()).size());
+    let height = 0.05 - 0.1 * settings.margin;
+    for spin in (0..60).map(|i| 0.1 * f64::from(i)) {
+        let turn = |axis: [f64; 3], angle| Rotation::from_axis_angle(axis, angle).unwrap();
+        let lying = turn([0.0, 1.0, 0.0], spin) * turn([0.0, 0.0, 1.0], 0.25 * TAU);
+        let pose = Pose::new(lying, Vector([0.013, height, -0.02]));
+        let found = &steps([&floor(), &cylinder], &[pose], &settings)[0];
+        let axis = pose.transform_vector(Vector::unit(1));
+        let places = found.contacts.iter();
+        let places = places.map(|contact| (contact.point_b - pose.translation).dot(axis));
+        let [first, last] =
+            places.fold([0.0_f64; 2], |[low, high], at| [low.min(at), high.max(at)]);
+        assert!(first < -0.08 && last > 0.08, "{spin}: from {first} to {last}");
     }
 }

@@ -118,8 +118,9 @@ pub(crate) fn penetration_of<const D: usize>(
     }
 }
 
-/// As [`penetration`], but of bodies for which that would search over translations it gives the translation of the
-/// first search. Its lower bound is the diameter of the largest common ball: nothing is spent on a better one.
+/// Answers as [`penetration`], without the search over translations. For bodies that are neither convex nor
+/// half-spaces, the upper bound is the translation of the search over directions, and the lower bound is the
+/// diameter of the largest common ball.
 pub(crate) fn way_out<const D: usize>(
     placed: [Placed<'_, D>; 2],
     limits: &Limits,
@@ -303,8 +304,8 @@ fn of_any<'a, const D: usize>(
     Ok(answer([lower, upper], direction, stop, evaluations))
 }
 
-/// A search for a short translation that has looked all around, and the separation where the bodies are. If that is
-/// not negative, nothing was searched.
+/// Returns the finished search over directions, and the separation at the given poses. If its lower bound is not
+/// negative, the search was not run.
 fn search_around<'a, 'w, const D: usize>(
     pair: &BodyPair<'a, D>,
     placed: [Placed<'a, D>; 2],
