@@ -40,9 +40,14 @@ impl<const N: usize, const D: usize> Solid<N, D> {
     /// A model that is at least twice as close below as another: the height over a plane square to the gradient `n` at
     /// the centre, above which no near face rises. `None` if there is none.
     ///
-    /// Near is what is in a [`Region`] about the cell. Let all of the surface in it be at `n·q ≤ c`, let what is in it
-    /// beyond this plane be outside, and let no point of the cell be farther from the plane than the region reaches
-    /// beyond the cell: above it all around, and below it along `n`. Then the field is at least `n·p − c` at each point `p` of the cell:
+    /// Near is what is in a [`Region`] about the cell. Three things must hold:
+    ///
+    /// - All of the surface in the region is at `n·q ≤ c`.
+    /// - What is in the region beyond this plane is outside.
+    /// - A point of the cell above the plane is no farther from it than the region reaches beyond the cell all around,
+    ///   and a point below it no farther than the region reaches along `n`.
+    ///
+    /// Then the field is at least `n·p − c` at each point `p` of the cell:
     ///
     /// - Outside, with `q` nearest to `p`, either `q` is in the region, and the distance is
     ///   `|p − q| ≥ n·(p − q) ≥ n·p − c`; or it is farther than the region reaches, so farther than the plane.

@@ -331,8 +331,9 @@ impl<const D: usize> Edge<D> {
         on.map(|low| low.edge)
     }
 
-    /// The edge of one body on a face of the other at a touch: the lowest point, if the touch is the deepest or the way there leads down steeply, else the point next to the
-    /// touch. `None` if a steep way is longer than a touch moves.
+    /// The edge of one body on a face of the other, at a touch. If the touch is the deepest or the edge descends
+    /// steeply from it, the result is the lowest point of the edge. Otherwise it is the point of the edge next
+    /// to the touch. `None` if the steep way is longer than the reach of the touch.
     fn on(
         pair: &mut BodyPair<'_, D>,
         face: usize,

@@ -299,8 +299,8 @@ impl<const D: usize> Track<D> {
     ///
     /// A search finds the region of contact up to a gap of 1.5 margins. The track uses this region until the
     /// bodies have moved by half a margin since the search. If the bodies come to rest at other poses than
-    /// those of the search, the track searches there once more. Until then no part of the region is new. A step moves the
-    /// contacts with the bodies and polishes them, for a few evaluations each. Another point of a patch may
+    /// those of the search, the track searches there once more. Until then no part of the region is new. A
+    /// step moves the contacts with the bodies and polishes them, for a few evaluations each. Another point of a patch may
     /// become the deepest meanwhile: the next search finds it. Where bodies overlap by more than the margin, each
     /// step is one of [`manifold`](Self::manifold), with its history.
     ///

@@ -15,8 +15,8 @@ use crate::manifold::{ManifoldSettings, manifold};
 use crate::pair::{PairWorkspace, way_out};
 use crate::sampler::Placed;
 
-/// The contacts at the end of a translation that separates the bodies, in the coordinates of each; none if no
-/// such translation was found. The number says how often fields were evaluated.
+/// The contacts at the end of a translation that separates the bodies, in the coordinates of each, and how often
+/// fields were evaluated. Without such a translation there are none.
 #[inline(never)]
 pub(super) fn contacts_outside<const D: usize>(
     [a, b]: &[Shape<D>; 2],
@@ -31,15 +31,7 @@ pub(super) fn contacts_outside<const D: usize>(
     let mut outside = poses[1];
     outside.translation += direction * way.upper;
     let found = manifold(placed[0], Placed::new(b, outside), settings, limits, workspace)?;
-    let into = [poses[0].inverse(), outside.inverse()];
-    let known = found.contacts.iter().map(|contact| KnownContact {
-        id: contact.id,
-        points: [
-            into[0].transform_point(contact.point_a),
-            into[1].transform_point(contact.point_b),
-        ],
-        normals: into.map(|into| into.transform_vector(contact.normal)),
-        missed: 0,
-    });
+    let from_world = [poses[0].inverse(), outside.inverse()];
+    let known = found.contacts.iter().map(|contact| KnownContact::of(contact, &from_world));
     Ok((known.collect(), spent.saturating_add(found.separation.evaluations)))
 }

@@ -44,6 +44,21 @@ pub(super) struct KnownContact<const D: usize> {
     pub(super) missed: u32,
 }
 
+impl<const D: usize> KnownContact<D> {
+    /// A contact of bodies at the inverses of these poses.
+    pub(super) fn of(contact: &Contact<D>, from_world: &[Pose<D>; 2]) -> Self {
+        Self {
+            id: contact.id,
+            points: [
+                from_world[0].transform_point(contact.point_a),
+                from_world[1].transform_point(contact.point_b),
+            ],
+            normals: from_world.map(|from_world| from_world.transform_vector(contact.normal)),
+            missed: 0,
+        }
+    }
+}
+
 impl<const D: usize> History<D> {
     /// Whether a contact is deeper than the margin and there is no history. It is `true` at most once in an
     /// overlap.
@@ -85,15 +100,7 @@ impl<const D: usize> History<D> {
     ) {
         let from_world = poses.map(|pose| pose.inverse());
         let known = contacts.iter().zip(are_known).filter(|(_, is_known)| **is_known);
-        self.replace(known.map(|(contact, _)| KnownContact {
-            id: contact.id,
-            missed: 0,
-            points: [
-                from_world[0].transform_point(contact.point_a),
-                from_world[1].transform_point(contact.point_b),
-            ],
-            normals: from_world.map(|from_world| from_world.transform_vector(contact.normal)),
-        }));
+        self.replace(known.map(|(contact, _)| KnownContact::of(contact, &from_world)));
     }
 
     /// Turns deep contacts back to the sides on which they came in: they get normals and gaps from their
