@@ -126,6 +126,11 @@ impl Limits {
         Self { budget, ..self }
     }
 
+    /// The same limits with the budget that is left.
+    pub(crate) const fn less(self, spent: u32) -> Self {
+        self.with_budget(self.budget.saturating_sub(spent))
+    }
+
     /// Refuses a tolerance that is negative, NaN or too large.
     pub(crate) fn check(&self) -> Result<(), QueryError> {
         QueryError::check_length(self.tolerance)

@@ -15,6 +15,7 @@
 //! with the bodies; the separation and its bounds come from `pair/search.rs`.
 
 mod cover;
+mod edge;
 mod patch;
 mod polish;
 mod region;
@@ -29,9 +30,10 @@ use crate::pair::body_pair::{BodyPair, Face};
 use crate::pair::search::PairSearch;
 use crate::pair::{Nearest, PairWorkspace};
 use crate::sampler::{Placed, arbitrary};
+pub(crate) use edge::Edge;
 use patch::Patches;
 pub(crate) use patch::{carried, followed};
-pub(crate) use polish::{Edge, Polish, Polished, polished};
+pub(crate) use polish::{Polish, Polished, polished};
 use region::Region;
 pub(crate) use region::distance;
 pub(crate) use solver::{Offer, choose, offer};

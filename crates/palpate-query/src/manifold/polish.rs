@@ -15,9 +15,10 @@
 //! direction without curvature, as on two flat faces, the gap has no least point: a touch stays where it is
 //! along this direction. So it does where the least point is far.
 
-use palpate_field::{Point, Vector};
+use palpate_field::Vector;
 
-use super::patch::{self, settled_slopes};
+use super::edge::{self, Edge, LOWER};
+use super::patch::settled_slopes;
 use super::region::distance;
 use super::{ManifoldSettings, Touch};
 use crate::certified::Goal;
@@ -29,19 +30,19 @@ use crate::pair::distance_bound::descend;
 pub(crate) const OPPOSITE: f64 = 1e-6;
 
 /// The gap falls if the part of the sum along a direction is longer.
-const SLOPE: f64 = 1e-5;
+pub(super) const SLOPE: f64 = 1e-5;
 
 /// Steps of Newton's method at most.
 const STEPS: usize = 8;
 
 /// The distance of the points whose gradients are compared, as a share of the spacing.
-const PROBE: f64 = 1e-3;
+pub(super) const PROBE: f64 = 1e-3;
 
 /// A step is good if it leaves no more than this share of the sum.
 const GOOD: f64 = 0.25;
 
 /// The gap does not curve along a direction if its radius of curvature is more than so many spacings.
-const FLAT: f64 = 1e4;
+pub(super) const FLAT: f64 = 1e4;
 
 /// Gradients whose sum is longer, 0.8°, may be those of a face and an edge.
 const EDGE: f64 = 0.014;
@@ -49,25 +50,13 @@ const EDGE: f64 = 0.014;
 /// Nothing is exact where the gap is larger than so many margins.
 const BEYOND: f64 = 1.5;
 
-/// The first step to the lowest point of an edge, in spacings.
-const LOWER: f64 = 0.25;
-
-/// The precision of the lowest point of an edge, as a share of [`ManifoldSettings::precision_length`].
-const LOWEST: f64 = 1e-5;
-
-/// An edge is near a touch of nearly parallel faces within so many spacings.
-const NEAR: f64 = 0.15;
-
-/// An edge is steep if it leads down by more than this share of the way, 6°.
-const STEEP: f64 = 0.1;
-
 /// How far a touch moves to where the gap is least, in spacings: the deepest, and another one, which spans
 /// the patch.
 const DEEPEST_MOVES: f64 = 2.0;
 const OTHERS_MOVE: f64 = 0.5;
 
 /// How far a touch may move to where the gap is least [m].
-fn reach(is_deepest: bool, settings: &ManifoldSettings) -> f64 {
+pub(super) fn reach(is_deepest: bool, settings: &ManifoldSettings) -> f64 {
     settings.spacing * if is_deepest { DEEPEST_MOVES } else { OTHERS_MOVE }
 }
 
@@ -113,9 +102,14 @@ impl<const D: usize> Curvature<D> {
         settings: &ManifoldSettings,
     ) -> Option<Self> {
         let far = PROBE * settings.spacing;
+        // Of both sides the one where the gradients turn less: beyond the other there is an edge.
         let mut change = |way: Vector<f64, D>| {
-            let slopes = pair.slopes(here.touch.point + way * far);
-            Some((sum(slopes)? - here.sum) * (1.0 / far))
+            let [one, other] = [far, -far].map(|far| {
+                let slopes = pair.slopes(here.touch.point + way * far);
+                Some((sum(slopes)? - here.sum) * (1.0 / far))
+            });
+            let (one, other) = (one?, other?);
+            Some(if one.dot(one) <= other.dot(other) { one } else { other })
         };
         let one = across(here.touch.normal);
         let by_one = change(one)?;
@@ -245,7 +239,9 @@ pub(crate) fn polished<const D: usize>(
     let precise = super::SAME_DEPTH * settings.precision_length();
     let is_deep =
         |edge: &Polished<D>| here.gap >= 0.0 || edge.contact.gap <= here.gap + precise;
-    edge.and_then(|edge| edge.contact(pair, settings)).filter(is_deep).or_else(|| {
+    let edge = edge.and_then(|edge| edge.contact(pair, settings)).filter(is_deep);
+    let lower = edge.or_else(|| edge::lowest_of_valley(pair, &here, settings).filter(is_deep));
+    lower.or_else(|| {
         let is_slope = !is_deepest && here.gap > -settings.margin;
         found.map(|found| Polished { is_slope, ..found.touch.usual(pair, settings) })
     })
@@ -274,122 +270,6 @@ impl<const D: usize> Opposed<D> {
         let contact = contact.unwrap_or_else(|| touch.contact_in_frame(pair, settings.spacing));
         let is_slope = is_slope && !is_deepest;
         Polished { touch, contact, edge: None, is_slope }
-    }
-}
-
-/// A point of an edge of one body that touches a face of the other: it stays where it is in its body.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Edge<const D: usize> {
-    body: usize,
-    /// In coordinates of that body.
-    point: Point<D>,
-    /// From the first body to the second, in the first one's coordinates.
-    normal: Vector<f64, D>,
-}
-
-/// An edge above a face.
-struct Low<const D: usize> {
-    edge: Edge<D>,
-    /// How high it is [m].
-    height: f64,
-    /// Whether the way to it leads down steeply.
-    is_steep: bool,
-}
-
-impl<const D: usize> Edge<D> {
-    /// The edge at a touch: of the body that has one, if the other has a face there, else of the body that
-    /// lies deeper in the other.
-    fn of(
-        pair: &mut BodyPair<'_, D>,
-        touch: &Touch<D>,
-        is_deepest: bool,
-        settings: &ManifoldSettings,
-    ) -> Option<Self> {
-        let slopes = pair.slopes(touch.point);
-        if let Some(face) = pair.face(touch.point, slopes) {
-            let on = Self::on(pair, face.body, touch, (is_deepest, settings));
-            return on.map(|low| low.edge);
-        }
-        let low = [0, 1].map(|face| Self::on(pair, face, touch, (is_deepest, settings)));
-        // Without a steep way to it there is no edge.
-        let steep = low.into_iter().flatten().filter(|low| low.is_steep || is_deepest);
-        let deeper = steep.min_by(|one, other| one.height.total_cmp(&other.height));
-        deeper.map(|low| low.edge)
-    }
-
-    /// The edge at a touch of nearly parallel faces, of the one body that has an edge near.
-    fn of_tilted(
-        pair: &mut BodyPair<'_, D>,
-        touch: &Touch<D>,
-        is_deepest: bool,
-        settings: &ManifoldSettings,
-    ) -> Option<Self> {
-        let slopes = pair.slopes(touch.point);
-        let body = pair.body_with_edge(touch.point, slopes, NEAR * settings.spacing)?;
-        let on = Self::on(pair, 1 - body, touch, (is_deepest, settings));
-        on.map(|low| low.edge)
-    }
-
-    /// The edge of one body on a face of the other, at a touch. If the touch is the deepest or the edge descends
-    /// steeply from it, the result is the lowest point of the edge. Otherwise it is the point of the edge next
-    /// to the touch. `None` if the steep way is longer than the reach of the touch.
-    fn on(
-        pair: &mut BodyPair<'_, D>,
-        face: usize,
-        touch: &Touch<D>,
-        (is_deepest, settings): (bool, &ManifoldSettings),
-    ) -> Option<Low<D>> {
-        let body = 1 - face;
-        let next = pair.surface_point(body, touch.point);
-        let near = settings.spacing.max(touch.gap.abs());
-        let start = next.filter(|p| distance(*p, touch.point) <= near)?;
-        let at_start = pair.slope(face, start);
-        let first = LOWER * settings.spacing;
-        let precise = LOWEST * settings.precision_length();
-        let (lowest, at_lowest) = patch::lowest(pair, face, (start, first), precise);
-        let way = distance(lowest, start);
-        let is_steep = at_start.0 - at_lowest.0 >= STEEP * way;
-        if is_steep && !is_deepest && way > reach(true, settings) {
-            return None;
-        }
-        let is_lowest = is_steep || is_deepest;
-        let (p, (height, slope)) =
-            if is_lowest { (lowest, at_lowest) } else { (start, at_start) };
-        let outwards = slope.normalized()?;
-        let normal = if face == 0 { outwards } else { -outwards };
-        let point = if body == 0 { p } else { pair.second_from_frame.transform_point(p) };
-        Some(Low { edge: Self { body, point, normal }, height, is_steep })
-    }
-
-    /// The contact of the edge where both bodies are now. `None` where the other body no longer faces it as
-    /// it did.
-    pub(crate) fn contact(
-        &self,
-        pair: &mut BodyPair<'_, D>,
-        settings: &ManifoldSettings,
-    ) -> Option<Polished<D>> {
-        let edge = if self.body == 0 {
-            self.point
-        } else {
-            pair.second_from_frame.inverse().transform_point(self.point)
-        };
-        let (value, slope) = pair.slope(1 - self.body, edge);
-        let outwards = slope.normalized()?;
-        let normal = if self.body == 0 { -outwards } else { outwards };
-        if normal.dot(self.normal) < super::LIKE || value.abs() > settings.spacing {
-            return None;
-        }
-        let face = edge - outwards * (value / slope.norm());
-        let [a, b] = if self.body == 0 { [edge, face] } else { [face, edge] };
-        let contact = Contact::new(a, b, normal);
-        let touch = Touch {
-            point: (a + b) * 0.5,
-            normal,
-            gap: contact.gap,
-            source: NormalSource::Gradients,
-        };
-        Some(Polished { touch, contact, edge: Some(*self), is_slope: false })
     }
 }
 

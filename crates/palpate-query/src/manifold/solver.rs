@@ -91,20 +91,18 @@ pub(crate) fn choose<const D: usize>(
     });
     let most = settings.most.max(1);
     let (mut rest, mut dropped) = (offers, 0);
-    while let Some(deepest) = rest.first().copied() {
-        if deepest.is_slope {
-            rest = &mut rest[1..];
-            continue;
-        }
-        let is_of_group =
-            |offer: &Offer<D>| offer.contact.normal.dot(deepest.contact.normal) > GROUP;
+    // A slope leads no group. A deeper one is of a group only with nearly the same normal: an end of a line.
+    while let Some(leader) = rest.iter().find(|offer| !offer.is_slope).copied() {
+        let alike = |offer: &Offer<D>| offer.contact.normal.dot(leader.contact.normal);
+        let deeper = |offer: &Offer<D>| offer.contact.gap - leader.contact.gap;
+        let is_of_group = |offer: &Offer<D>| {
+            alike(offer) > if deeper(offer) < 0.0 { PARALLEL } else { GROUP }
+        };
         let count = gather(rest, is_of_group);
         let (group, others) = rest.split_at_mut(count);
         rest = others;
-        let is_flat = |offer: &Offer<D>| {
-            offer.contact.normal.dot(deepest.contact.normal) > PARALLEL
-                || offer.contact.gap - deepest.contact.gap <= SLOP_SHARE * slop
-        };
+        let is_flat =
+            |offer: &Offer<D>| alike(offer) > PARALLEL || deeper(offer) <= SLOP_SHARE * slop;
         let flat = gather(group, is_flat);
         let patch = &mut group[..flat];
         let count = spread(patch, settings, slop);

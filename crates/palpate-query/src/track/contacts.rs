@@ -425,7 +425,7 @@ impl<const D: usize> Track<D> {
                 self.memory.names = before;
             }
         }
-        let manifold = self.manifold(poses, settings, limits, workspace)?;
+        let manifold = self.manifold(poses, settings, &limits.less(spent), workspace)?;
         let found = &mut self.found;
         found.clear();
         found.contacts.extend_from_slice(&manifold.contacts);

@@ -30,7 +30,8 @@ pub(super) fn contacts_outside<const D: usize>(
     let Some(direction) = way.best.direction else { return Ok((Vec::new(), spent)) };
     let mut outside = poses[1];
     outside.translation += direction * way.upper;
-    let found = manifold(placed[0], Placed::new(b, outside), settings, limits, workspace)?;
+    let rest = limits.less(spent);
+    let found = manifold(placed[0], Placed::new(b, outside), settings, &rest, workspace)?;
     let from_world = [poses[0].inverse(), outside.inverse()];
     let known = found.contacts.iter().map(|contact| KnownContact::of(contact, &from_world));
     Ok((known.collect(), spent.saturating_add(found.separation.evaluations)))

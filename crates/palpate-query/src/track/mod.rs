@@ -342,7 +342,8 @@ impl<const D: usize> Track<D> {
         let TrackMemory { names, history, .. } = &mut self.memory;
         let separation = &mut found.separation;
         if history.is_first_deep(&found.contacts, settings.margin) {
-            let (shapes, settings) = (&self.shapes, (settings, limits));
+            let rest = limits.less(separation.evaluations);
+            let (shapes, settings) = (&self.shapes, (settings, &rest));
             let (outside, spent) = contacts_outside(shapes, poses, settings, workspace)?;
             separation.evaluations = separation.evaluations.saturating_add(spent);
             history.came_from(outside);

@@ -22,6 +22,7 @@ mod mesh_memory;
 mod mesh_sweeps;
 mod meshes;
 mod notches;
+mod on_edges;
 mod pair_laws;
 mod pairs;
 mod penetration_laws;
