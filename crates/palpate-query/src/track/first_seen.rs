@@ -25,7 +25,9 @@ pub(super) fn contacts_outside<const D: usize>(
     workspace: &mut PairWorkspace<D>,
 ) -> Result<(Vec<KnownContact<D>>, u32), QueryError> {
     let placed = [Placed::new(a, poses[0]), Placed::new(b, poses[1])];
-    let way = way_out(placed, limits, workspace)?;
+    // The other half is for the contacts at its end.
+    let half = limits.with_budget(limits.budget / 2);
+    let way = way_out(placed, &half, workspace)?;
     let spent = way.evaluations;
     let Some(direction) = way.best.direction else { return Ok((Vec::new(), spent)) };
     let mut outside = poses[1];
