@@ -44,6 +44,6 @@ pub use mesh::{MOST_CORNERS, Mesh, Outline, TriangleMesh};
 #[cfg(feature = "files")]
 pub use read::{Format, LARGEST_FILE, ReadError, ReadProblem, read, read_file};
 pub use report::Report;
-pub use solid::{Findings, MeshSheet, Opening, Solid, SolidError};
+pub use solid::{Cracks, Findings, MeshSheet, Opening, Solid, SolidError};
 pub use tree::{BallTree, FAN, Level};
 pub use tree::{centre_weights, circumscribed_ball, smallest_ball};

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 
 use palpate_field::{Aabb, LARGEST_LENGTH, Point, Vector};
 
+use crate::solid::rounding_of;
 use crate::tree::BallTree;
 
 /// Elements of `N` vertices each in `D` dimensions: triangles or segments.
@@ -29,6 +30,8 @@ pub struct Mesh<const N: usize, const D: usize> {
     elements: Vec<[u32; N]>,
     bounds: Aabb<D>,
     tree: BallTree<D>,
+    /// The rounding of the coordinates, relative to the largest; `None` if they tell it themselves.
+    rounding: Option<f64>,
 }
 
 /// Triangles in space.
@@ -73,7 +76,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
         let named = elements.iter().flatten().map(|&index| vertices[index as usize]);
         let bounds = Aabb::around(named).ok_or(empty)?;
         let tree = BallTree::new(&vertices, &elements);
-        Ok(Self { vertices, elements, bounds, tree })
+        Ok(Self { vertices, elements, bounds, tree, rounding: None })
     }
 
     /// The vertices [m].
@@ -128,8 +131,20 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
         if !(factor > 0.0 && factor.is_finite()) {
             return Err(MeshError::Scale { value: factor });
         }
+        let rounding = Some(self.rounding());
         let vertices = self.vertices.into_iter().map(|vertex| vertex * factor).collect();
-        Self::new(vertices, self.elements)
+        Ok(Self { rounding, ..Self::new(vertices, self.elements)? })
+    }
+
+    /// The same mesh of coordinates with another rounding, relative to the largest.
+    #[cfg(feature = "files")]
+    pub(crate) fn with_rounding(self, rounding: f64) -> Self {
+        Self { rounding: Some(rounding), ..self }
+    }
+
+    /// The rounding of the coordinates, relative to the largest: that of the file or of the numbers themselves.
+    pub(crate) fn rounding(&self) -> f64 {
+        self.rounding.unwrap_or_else(|| rounding_of(&self.vertices))
     }
 
     /// The mesh with equal vertices merged into one, in the order in which they first appear.
@@ -142,7 +157,7 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
             *index = names[*index as usize];
         }
         // The same points in the same elements have the same bounds and the same tree.
-        Self { vertices, elements, bounds: self.bounds, tree: self.tree }
+        Self { vertices, elements, ..self }
     }
 }
 

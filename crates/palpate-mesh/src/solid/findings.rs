@@ -19,6 +19,12 @@ pub struct Findings<const D: usize> {
     pub own: usize,
     /// Vertices equal to another, merged with it.
     pub welded: usize,
+    /// Vertices joined with another a rounding away, where that closed edges.
+    pub joined: usize,
+    /// How far vertices were moved that were joined, and edges that were parted beside a corner, at most [m].
+    pub moved: f64,
+    /// What would close cracks that are left.
+    pub cracks: Option<Cracks>,
     /// Faces with a vertex twice, dropped.
     pub degenerate: usize,
     /// Faces with the vertices of another, dropped.
@@ -52,6 +58,16 @@ pub struct Findings<const D: usize> {
     pub crossing_at: Option<Point<D>>,
 }
 
+/// Cracks between faces whose corners are farther apart than roundings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Cracks {
+    /// How wide the widest is [m].
+    pub width: f64,
+    /// Corners joined within this length close nearly all of them [m].
+    pub join_within: f64,
+}
+
 impl<const D: usize> Findings<D> {
     /// The same with lengths and places in other units.
     #[must_use]
@@ -65,6 +81,11 @@ impl<const D: usize> Findings<D> {
             };
         }
         self.crossing_at = self.crossing_at.map(|at| at * factor);
+        self.moved *= factor;
+        self.cracks = self.cracks.map(|Cracks { width, join_within }| Cracks {
+            width: width * factor,
+            join_within: join_within * factor,
+        });
         self
     }
 
@@ -73,6 +94,7 @@ impl<const D: usize> Findings<D> {
     #[must_use]
     pub fn is_clean(&self) -> bool {
         let flaws = [
+            self.joined,
             self.degenerate,
             self.duplicates,
             self.turned,
@@ -104,6 +126,12 @@ impl<const D: usize> fmt::Display for Findings<D> {
             self.welded,
             "vertex equal to another was merged",
             "vertices equal to others were merged",
+        );
+        let moved = metres(self.moved);
+        say(
+            self.joined,
+            &format!("vertex {moved} m beside another was joined with it"),
+            &format!("vertices up to {moved} m beside others were joined with them"),
         );
         say(
             self.degenerate,
@@ -165,7 +193,21 @@ impl<const D: usize> fmt::Display for Findings<D> {
                 format!("{count} openings, the largest {size} m across at ({at}), were closed by flat caps: within {doubtful} m of the largest the sign is a guess")
             });
         }
+        if let Some(cracks) = self.cracks {
+            found.push(cracks.to_string());
+        }
         f.write_str(&found.join("; "))
+    }
+}
+
+impl fmt::Display for Cracks {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [width, within] = [self.width, self.join_within].map(metres);
+        write!(
+            f,
+            "its faces are parted by cracks up to {width} m wide: joining corners within {within} m closes them \
+             (--weld-within, \"weld_within\" in a scene)"
+        )
     }
 }
 

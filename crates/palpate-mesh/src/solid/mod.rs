@@ -7,22 +7,26 @@ use faces::{Boxes, Normals};
 use field::{Foot, Part, Walls, foot};
 use palpate_field::scalar::AffineModel;
 use palpate_field::{
-    Aabb, LARGEST_LENGTH, Point, Promise, Quality, SMALLEST_LENGTH, Vector, Wide, wide,
+    Aabb, Deviation, LARGEST_LENGTH, Point, Promise, Quality, SMALLEST_LENGTH, Vector, Wide,
+    wide,
 };
 use planes::highest;
-use repair::{Crossings, Known, Repair, by_rim, sides};
+use repair::{
+    Crossings, Joined, Known, Repair, ShortEdge, Within, by_rim, cracks, shortest_edge, sides,
+};
 use winding::WindingTree;
 
-use crate::mesh::{Mesh, MeshError};
+use crate::mesh::{Mesh, MeshError, weld};
 use crate::report::is_flat;
 use crate::solid::faces::Faces;
 use crate::tree::BallTree;
 
 pub use field::MeshSheet;
 pub(crate) use field::across;
-pub use findings::Findings;
+pub use findings::{Cracks, Findings};
 pub use repair::Opening;
 pub(crate) use repair::crossing_faces;
+pub(crate) use repair::rounding_of;
 
 mod faces;
 mod field;
@@ -87,19 +91,67 @@ struct Signs<const N: usize, const D: usize> {
 impl<const N: usize, const D: usize> Solid<N, D> {
     /// The solid of a mesh, and what was found and mended.
     ///
-    /// Equal vertices are merged; faces with a vertex twice and doubled faces are dropped; neighbours are turned to
-    /// agree on the inside; faces are parted where corners of others lie on their edges; openings are closed by
+    /// Equal vertices are merged; faces with a vertex twice and doubled faces are dropped; faces are parted where
+    /// corners of others lie on their edges; neighbours are turned to agree on the inside; openings are closed by
     /// caps; sheets within the solid are dropped; pieces inside out are turned; faces with the solid on both sides,
     /// or on neither, are dropped.
+    ///
+    /// Where that closes edges, vertices are joined that are equal up to the rounding of the coordinates, or up to a
+    /// millionth of the shortest edge. The promise's [deviation](palpate_field::Deviation) says how far that moved
+    /// the surface.
     ///
     /// # Errors
     ///
     /// If no face is left, or the faces bound no solid: a piece is not orientable, or the caps are as large as the
-    /// faces, as of a sheet.
+    /// faces, as of a sheet or of faces with cracks between them.
     #[inline(never)]
     pub fn from_mesh(mesh: &Mesh<N, D>) -> Result<(Self, Findings<D>), SolidError> {
-        let repair = Repair::of(mesh);
-        check(mesh, &repair)?;
+        Self::joined(mesh, Within::Rounding)
+    }
+
+    /// The same, where vertices at open edges are joined that are at most `within` apart [m], if that closes edges.
+    /// With zero only vertices that are exactly equal are joined.
+    ///
+    /// ```
+    /// use palpate_field::Vector;
+    /// use palpate_mesh::{Solid, TriangleMesh};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// // A tetrahedron of which one face is 10 µm away from the others.
+    /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    /// let lowered = [[0.0, 0.0, -1e-5], [1.0, 0.0, -1e-5], [0.0, 1.0, -1e-5]];
+    /// let vertices = corners.into_iter().chain(lowered).map(Vector).collect();
+    /// let faces = vec![[4, 6, 5], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+    /// let mesh = TriangleMesh::new(vertices, faces)?;
+    /// let (solid, findings) = Solid::from_mesh_within(&mesh, 2e-5)?;
+    /// assert_eq!(findings.joined, 3);
+    /// assert!((findings.moved - 1e-5).abs() < 1e-12);
+    /// assert_eq!(solid.vertices().len(), 4);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`from_mesh`](Self::from_mesh), and if the length is negative, NaN or more than half of the shortest edge
+    /// that is left.
+    #[inline(never)]
+    pub fn from_mesh_within(
+        mesh: &Mesh<N, D>,
+        within: f64,
+    ) -> Result<(Self, Findings<D>), SolidError> {
+        if within.is_nan() || within < 0.0 {
+            return Err(SolidError::JoinWithin { within });
+        }
+        Self::joined(mesh, Within::Length(within))
+    }
+
+    fn joined(mesh: &Mesh<N, D>, within: Within) -> Result<(Self, Findings<D>), SolidError> {
+        let mut repair = Repair::of(mesh, within);
+        check(mesh, &repair, within)?;
+        if !repair.findings.openings.is_empty() {
+            repair.findings.cracks = cracks_of(mesh);
+        }
         let all = Ordered::of(&repair.vertices, &repair.elements);
         let (crossings, walls, tree) = examine(&repair, &all);
         let Repair { mut vertices, mut elements, mut findings, caps, .. } = repair;
@@ -136,7 +188,8 @@ impl<const N: usize, const D: usize> Solid<N, D> {
             }
             _ => None,
         };
-        let promise = promise(&faces, quality(&crossings, &walls));
+        let mut promise = promise(&faces, quality(&crossings, &walls));
+        promise.deviation = deviation(&findings);
         let normals = Normals::new(vertices.len(), &ordered, &faces);
         let surface = Surface::new(&faces);
         Ok((Self { vertices, elements, surface, normals, signs, promise }, findings))
@@ -225,6 +278,7 @@ impl<const N: usize, const D: usize> Solid<N, D> {
 fn check<const N: usize, const D: usize>(
     mesh: &Mesh<N, D>,
     repair: &Repair<N, D>,
+    within: Within,
 ) -> Result<(), SolidError> {
     let given = mesh.elements().len();
     if repair.elements.is_empty() {
@@ -235,10 +289,43 @@ fn check<const N: usize, const D: usize>(
     if !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&size) {
         return Err(SolidError::Size { size });
     }
+    if let Within::Length(within) = within
+        && let Some(ShortEdge { ends, length }) =
+            shortest_edge(&repair.vertices, &repair.elements, 0.0)
+        && within > 0.5 * length
+    {
+        let ends = ends.map(|end| format!("({})", end.0.map(|x| x.to_string()).join(", ")));
+        return Err(SolidError::ShortEdge { within, length, ends: ends.join(" to ") });
+    }
     match repair.findings.one_sided {
-        0 if repair.is_sheet => Err(SolidError::Sheet),
+        0 if repair.is_sheet => Err(match cracks_of(mesh) {
+            Some(cracks) => SolidError::Cracked { cracks },
+            None => SolidError::Sheet,
+        }),
         0 => Ok(()),
         pieces => Err(SolidError::OneSided { pieces }),
+    }
+}
+
+/// The cracks of a mesh, if joining corners closes nearly all of its open edges.
+fn cracks_of<const N: usize, const D: usize>(mesh: &Mesh<N, D>) -> Option<Cracks> {
+    let (vertices, names) = weld(mesh.vertices());
+    let named = |element: &[u32; N]| element.map(|index| names[index as usize]);
+    let elements: Vec<_> = mesh.elements().iter().map(named).collect();
+    let Joined { farthest, tolerance, .. } = cracks(&vertices, &elements, mesh.rounding())?;
+    Some(Cracks { width: farthest, join_within: tolerance })
+}
+
+/// How far the solid may be from that of the mesh as it came: where vertices were joined by what they moved, and by an
+/// unknown amount where openings were closed.
+fn deviation<const D: usize>(findings: &Findings<D>) -> Option<Deviation> {
+    let largest = findings.openings.iter().map(|opening| opening.doubtful);
+    match largest.reduce(f64::max) {
+        Some(value) => Some(Deviation { value, within: 0.0 }),
+        None if findings.moved > 0.0 => {
+            Some(Deviation { value: findings.moved, within: f64::INFINITY })
+        }
+        None => None,
     }
 }
 
@@ -353,6 +440,31 @@ pub enum SolidError {
     Size {
         /// The longest side of the box around it, in its units.
         size: f64,
+    },
+    /// The length within which vertices are joined is none.
+    #[error("vertices are joined within a length of at least 0, got {within:e}")]
+    JoinWithin {
+        /// The length, in the units of the mesh.
+        within: f64,
+    },
+    /// Vertices were to be joined over more than half of an edge.
+    #[error(
+        "vertices are to be joined within {within:e}, and the edge from {ends} is only {length:e} long: join within less \
+         than half of it"
+    )]
+    ShortEdge {
+        /// The length within which vertices were to be joined, in the units of the mesh.
+        within: f64,
+        /// The length of the shortest edge, in the units of the mesh.
+        length: f64,
+        /// Its ends, in the units of the mesh.
+        ends: String,
+    },
+    /// The faces have cracks between them.
+    #[error("it bounds no solid: {cracks}")]
+    Cracked {
+        /// How wide the cracks are, in the units of the mesh.
+        cracks: Cracks,
     },
     /// The thickness of a sheet is too small or too large.
     #[error(

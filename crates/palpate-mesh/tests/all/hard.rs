@@ -223,6 +223,12 @@ fn findings_are_counted() {
 fn what_bounds_no_solid_is_refused() {
     for (name, soup) in hard::refused() {
         let error = Solid::from_mesh(&mesh(&soup)).unwrap_err();
+        if let SolidError::Cracked { cracks } = error {
+            assert_eq!(name, "cracks all over");
+            // Each corner is up to 1e-4 off along each axis.
+            assert!(cracks.width > 1e-4 && cracks.width < 4e-4, "{cracks:?}");
+            continue;
+        }
         let expected = match name {
             "Klein bottle" => SolidError::OneSided { pieces: 1 },
             _ => SolidError::Sheet,

@@ -8,6 +8,7 @@
 mod contours;
 mod files;
 mod hard;
+mod joins;
 mod planes;
 mod samples;
 mod solids;

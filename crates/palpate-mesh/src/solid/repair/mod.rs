@@ -5,6 +5,8 @@
 
 mod cap;
 mod crossing;
+mod join;
+mod junctions;
 mod orient;
 mod rims;
 
@@ -13,6 +15,8 @@ use palpate_field::Point;
 pub use cap::Opening;
 pub(crate) use crossing::crossing_faces;
 pub(super) use crossing::{Crossings, Known};
+pub(super) use join::{Joined, ShortEdge, cracks, shortest_edge};
+pub(crate) use join::{Within, rounding_of};
 pub(super) use orient::Pieces;
 pub(super) use rims::{by_rim, sides};
 
@@ -36,16 +40,18 @@ pub(super) struct Repair<const N: usize, const D: usize> {
 }
 
 impl<const N: usize, const D: usize> Repair<N, D> {
-    /// All steps but the search for faces that cross: equal vertices are welded; elements with a vertex twice and
-    /// doubled elements are dropped; neighbours are turned to agree on the inside; faces are parted at corners of
-    /// others on their edges; openings are capped; sheets within the solid are dropped; pieces that are inside out
-    /// are turned.
-    pub(super) fn of(mesh: &Mesh<N, D>) -> Self {
+    /// All steps but the search for faces that cross: equal vertices are welded, and those that are `within` so much of
+    /// each other where that closes edges; elements with a vertex twice and doubled elements are dropped; neighbours are
+    /// turned to agree on the inside; faces are parted at corners of others on their edges; openings are capped;
+    /// sheets within the solid are dropped; pieces that are inside out are turned.
+    pub(super) fn of(mesh: &Mesh<N, D>, within: Within) -> Self {
         let (vertices, names) = weld(mesh.vertices());
         let mut findings = Findings { faces: mesh.elements().len(), ..Findings::default() };
         findings.welded = mesh.vertices().len() - vertices.len();
         let named = |element: &[u32; N]| element.map(|index| names[index as usize]);
         let mut elements: Vec<_> = mesh.elements().iter().map(named).collect();
+        let joined = join::join(&vertices, &mut elements, within, mesh.rounding());
+        (findings.joined, findings.moved) = (joined.corners, joined.farthest);
         elements.retain(|element| (1..N).all(|i| !element[..i].contains(&element[i])));
         findings.degenerate = findings.faces - elements.len();
         let mut repair = Self {
@@ -58,9 +64,11 @@ impl<const N: usize, const D: usize> Repair<N, D> {
             is_sheet: false,
         };
         repair.drop_duplicates();
+        let parted = junctions::part(&repair.vertices, &mut repair.elements, joined.tolerance);
+        repair.findings.parted = parted.edges;
+        repair.findings.moved = repair.findings.moved.max(parted.farthest);
         (repair.findings.turned, repair.findings.one_sided) =
             orient::agree(&mut repair.elements);
-        repair.findings.parted = rims::part(&repair.vertices, &mut repair.elements);
         repair.caps = vec![None; repair.elements.len()];
         let caps = cap::close(&repair.vertices, &mut repair.elements);
         repair.caps.extend(caps.of_element.into_iter().map(Some));
