@@ -241,22 +241,36 @@ impl PyMesh {
     /// The solid that the mesh bounds, as a shape: the distance to the nearest face, negative inside.
     ///
     /// What is wrong is mended, and `findings` says in words what was. Faces that bound no solid are refused; with a
-    /// `thickness` [m] they are a plate.
+    /// `thickness` [m] they are a plate. Corners at open edges are joined where that closes edges: those that are equal
+    /// up to rounding, or those at most `weld_within` apart [m].
     ///
-    /// Raises `MeshError` if the mesh bounds no solid.
+    /// Raises `MeshError` if the mesh bounds no solid, or `weld_within` is more than half of an edge.
     ///
     /// >>> import palpate as pp
     /// >>> solid = pp.ball(0.5).mesh(cell=0.05).shape()
     /// >>> solid.promise.outside, bool(abs(solid.distance([0, 1, 0]) - 0.5) < 0.01)
     /// ('exact', True)
-    #[pyo3(signature = (*, thickness = None))]
-    fn shape(&self, py: Python<'_>, thickness: Option<f64>) -> PyResult<PyShape> {
+    #[pyo3(signature = (*, thickness = None, weld_within = None))]
+    fn shape(
+        &self,
+        py: Python<'_>,
+        thickness: Option<f64>,
+        weld_within: Option<f64>,
+    ) -> PyResult<PyShape> {
+        if thickness.is_some() && weld_within.is_some() {
+            return Err(PyValueError::new_err(
+                "a plate takes its faces as they are: leave weld_within or thickness out",
+            ));
+        }
         of_either!(&self.0, mesh => {
             let mesh = Arc::clone(mesh);
             match thickness {
                 None => {
-                    let solid = abandonable(py, move || Solid::from_mesh(&mesh))?.or_raise(py)?;
-                    Ok(Shape::from(solid.0).into())
+                    let work = move || match weld_within {
+                        None => Solid::from_mesh(&mesh),
+                        Some(within) => Solid::from_mesh_within(&mesh, within),
+                    };
+                    Ok(Shape::from(abandonable(py, work)?.or_raise(py)?.0).into())
                 }
                 Some(thickness) => {
                     let work = move || MeshSheet::from_mesh(&mesh, thickness);

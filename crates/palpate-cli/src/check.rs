@@ -39,8 +39,9 @@ pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
                 AnyScene::Planar(scene) => Answer::of(name, scene),
                 AnyScene::Spatial(scene) => Answer::of(name, scene),
             };
+            let outcome = if answer.ok { Outcome::Yes } else { Outcome::No };
             out.print(&answer, options.json)?;
-            Ok(Outcome::Yes)
+            Ok(outcome)
         }
     }
 }
@@ -101,13 +102,13 @@ impl fmt::Display for Refused {
     }
 }
 
-/// The answer of `palpate check` about a good scene.
+/// The answer of `palpate check` about a scene that can be used.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct Answer {
     #[serde(skip)]
     name: String,
-    /// Always `true`: the scene can be used.
+    /// `false` if the repair of a mesh is a guess: the scene can be used, and its thing may differ.
     pub(crate) ok: bool,
     /// 2 for the plane, 3 for space.
     pub(crate) dimension: usize,
@@ -234,6 +235,12 @@ pub(crate) struct Mesh {
     pub(crate) faces: usize,
     /// Vertices equal to another, merged with it.
     pub(crate) welded: usize,
+    /// Vertices joined with another a rounding away, or within `weld_within`, where that closed edges.
+    pub(crate) joined: usize,
+    /// How far the surface was moved by that at most [m].
+    pub(crate) moved: f64,
+    /// The cracks that joining corners would close; `null` if there are none.
+    pub(crate) cracks: Option<Cracks>,
     /// Faces with a vertex twice, dropped.
     pub(crate) degenerate: usize,
     /// Faces with the vertices of another, dropped.
@@ -266,6 +273,16 @@ pub(crate) struct Mesh {
     pub(crate) samples: Option<Sampled>,
     /// What to do if the file seems to be in another unit than metres.
     pub(crate) hint: Option<String>,
+}
+
+/// Cracks between the faces of a mesh.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct Cracks {
+    /// How wide the widest is [m].
+    pub(crate) width: f64,
+    /// The `weld_within` that closes nearly all of them [m].
+    pub(crate) join_within: f64,
 }
 
 /// An opening of a mesh.
@@ -333,12 +350,13 @@ impl Answer {
                 speed: motion.speed,
             })
             .collect();
+        let meshes: Vec<Mesh> = scene.meshes.iter().map(Mesh::of).collect();
         Self {
             name,
-            ok: true,
+            ok: meshes.iter().all(|mesh| mesh.openings.is_empty()),
             dimension: D,
             bodies,
-            meshes: scene.meshes.iter().map(Mesh::of).collect(),
+            meshes,
             jumps: jumps.collect(),
             odd_motions,
         }
@@ -364,6 +382,11 @@ impl Mesh {
             bounds: mesh.shape.promise().bounds.map(|bounds| bounds.aabb.into()),
             faces: found.faces,
             welded: found.welded,
+            joined: found.joined,
+            moved: found.moved,
+            cracks: found
+                .cracks
+                .map(|cracks| Cracks { width: cracks.width, join_within: cracks.join_within }),
             degenerate: found.degenerate,
             duplicates: found.duplicates,
             turned: found.turned,
@@ -404,9 +427,14 @@ impl fmt::Display for Answer {
                 format!("; {files} used as mended, and not good alone")
             }
         };
+        let guesses = self.meshes.iter().filter(|mesh| !mesh.openings.is_empty()).count();
+        let verdict = match guesses {
+            0 => "good".to_owned(),
+            count => format!("not sure, the repair of {} is a guess", counted(count, "mesh", "meshes")),
+        };
         writeln!(
             f,
-            "{}: good, {}D, {}{mended}",
+            "{}: {verdict}, {}D, {}{mended}",
             shown(&self.name),
             self.dimension,
             counted(self.bodies.len(), "body", "bodies")

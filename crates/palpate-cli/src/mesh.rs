@@ -10,7 +10,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use palpate::grid::Volume;
-use palpate::mesh::{Findings, Format, ReadError, ReadProblem, Solid, TriangleMesh, read_file};
+use palpate::mesh::{
+    Findings, Format, ReadError, ReadProblem, Solid, SolidError, TriangleMesh, read_file,
+};
 use palpate::scene::text::rounded;
 use serde::Serialize;
 use serde_json::Value;
@@ -97,7 +99,7 @@ pub(crate) struct Bounded {
 impl Checked {
     fn of(mesh: &TriangleMesh, options: &MeshOptions) -> Self {
         let report = mesh.report();
-        let solid = Solid::from_mesh(mesh);
+        let solid = options.solid(mesh);
         let crosses =
             solid.as_ref().is_ok_and(|(_, found)| found.crossings + found.touching > 0);
         let bounded = |(solid, found): (Solid<3, 3>, Findings<3>)| Bounded {
@@ -179,6 +181,19 @@ impl fmt::Display for Checked {
         match &self.hint {
             Some(hint) => writeln!(f, "  hint     {hint}"),
             None => Ok(()),
+        }
+    }
+}
+
+impl MeshOptions {
+    /// The solid of a mesh, with its corners joined as the options say.
+    pub(crate) fn solid(
+        &self,
+        mesh: &TriangleMesh,
+    ) -> Result<(Solid<3, 3>, Findings<3>), SolidError> {
+        match self.weld_within {
+            None => Solid::from_mesh(mesh),
+            Some(within) => Solid::from_mesh_within(mesh, within),
         }
     }
 }
@@ -280,6 +295,10 @@ pub(crate) struct MeshOptions {
     /// Merge vertices that are exactly equal, as is always done for STL.
     #[arg(long)]
     pub(crate) weld: bool,
+    /// Of the solid, join corners at open edges that are at most this far apart [m], where that closes edges. If left
+    /// out, those that are equal up to rounding are joined; with 0, those that are exactly equal.
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    pub(crate) weld_within: Option<f64>,
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,

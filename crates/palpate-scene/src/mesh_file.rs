@@ -45,6 +45,8 @@ pub struct BuiltMesh {
     pub samples: Option<Samples>,
     /// The thickness of the plate that a sheet makes [m]; `None` of a solid.
     pub thickness: Option<f64>,
+    /// The length within which corners were joined [m], where the scene says it; else their rounding does.
+    pub weld_within: Option<f64>,
     /// What was found in it, and mended; nothing is looked for in a sheet.
     pub findings: Findings<3>,
     /// The solid.
@@ -90,7 +92,8 @@ impl BuiltMesh {
     /// Whether it is the same file at the same scale.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         let numbers = |mesh: &Self| {
-            (mesh.scale.to_bits(), [mesh.value, mesh.thickness].map(|x| x.map(f64::to_bits)))
+            let numbers = [mesh.value, mesh.thickness, mesh.weld_within];
+            (mesh.scale.to_bits(), numbers.map(|x| x.map(f64::to_bits)))
         };
         let names = |mesh: &Self| (mesh.file.clone(), mesh.grid.clone(), mesh.inside);
         self.file.is_some() && names(self) == names(other) && numbers(self) == numbers(other)
@@ -106,6 +109,14 @@ pub(crate) struct WrittenMesh {
     vertices: Option<Vec<[f64; 3]>>,
     faces: Option<Vec<[u32; 3]>>,
     thickness: Option<f64>,
+    weld_within: Option<f64>,
+}
+
+/// What a scene says of how the faces of a mesh bound a body [m].
+#[derive(Clone, Copy, Default)]
+struct Bounding {
+    thickness: Option<f64>,
+    weld_within: Option<f64>,
 }
 
 /// The surface of a volume as a file gives it.
@@ -130,7 +141,7 @@ struct Asked<'a> {
     grid: Option<&'a str>,
     value: Option<f64>,
     inside: Option<Inside>,
-    thickness: Option<f64>,
+    bounding: Bounding,
 }
 
 fn one() -> f64 {
@@ -140,13 +151,15 @@ fn one() -> f64 {
 impl WrittenMesh {
     /// The solid; a file is looked for in `folder`.
     pub(crate) fn built(self, folder: Option<&Path>) -> Result<BuiltMesh, Problem> {
+        let Self { thickness, weld_within, .. } = self;
+        let bounding = Bounding { thickness, weld_within };
         match (&self.file, self.vertices, self.faces) {
             (Some(file), None, None) => {
                 let scale = self.scale.unwrap_or_else(one);
-                of_file(file, scale, self.thickness, folder)
+                of_file(file, scale, bounding, folder)
             }
             (None, Some(vertices), Some(faces)) if self.scale.is_none() => {
-                of_arrays(vertices, faces, self.thickness)
+                of_arrays(vertices, faces, bounding)
             }
             _ => Err(Problem::new(
                 "must have `file`, and `scale` if it is not in metres, or `vertices` in metres and `faces`",
@@ -159,14 +172,14 @@ impl WrittenMesh {
 fn of_file(
     file: &str,
     scale: f64,
-    thickness: Option<f64>,
+    bounding: Bounding,
     folder: Option<&Path>,
 ) -> Result<BuiltMesh, Problem> {
     let read = |path: &Path| {
         read_file(path).map(|mesh| (mesh, None)).map_err(|error| error.to_string())
     };
     let (grid, value, inside) = (None, None, None);
-    let asked = Asked { what: "a mesh", file, scale, grid, value, inside, thickness };
+    let asked = Asked { what: "a mesh", file, scale, grid, value, inside, bounding };
     built(asked, folder, read)
 }
 
@@ -174,14 +187,15 @@ fn of_file(
 fn of_arrays(
     vertices: Vec<[f64; 3]>,
     faces: Vec<[u32; 3]>,
-    thickness: Option<f64>,
+    bounding: Bounding,
 ) -> Result<BuiltMesh, Problem> {
-    check_thickness(thickness)?;
+    bounding.check()?;
     let vertices = vertices.into_iter().map(Vector).collect();
     let mesh =
         TriangleMesh::new(vertices, faces).map_err(|error| Problem::new(error.to_string()))?;
     let (shape, findings) =
-        solid(&mesh, thickness).map_err(|error| Problem::new(error.to_string()))?;
+        solid(&mesh, bounding).map_err(|error| Problem::new(error.to_string()))?;
+    let Bounding { thickness, weld_within } = bounding;
     Ok(BuiltMesh {
         file: None,
         scale: one(),
@@ -189,19 +203,24 @@ fn of_arrays(
         value: None,
         inside: None,
         thickness,
+        weld_within,
         samples: None,
         findings,
         shape,
     })
 }
 
-/// The solid of a mesh, or the plate about its faces.
+/// The solid of a mesh, or the plate about its faces; lengths are in the units of the mesh.
 fn solid(
     mesh: &TriangleMesh,
-    thickness: Option<f64>,
+    Bounding { thickness, weld_within }: Bounding,
 ) -> Result<(Shape<3>, Findings<3>), SolidError> {
     let Some(thickness) = thickness else {
-        return Solid::from_mesh(mesh).map(|(solid, found)| (solid.into(), found));
+        let solid = match weld_within {
+            None => Solid::from_mesh(mesh),
+            Some(within) => Solid::from_mesh_within(mesh, within),
+        };
+        return solid.map(|(solid, found)| (solid.into(), found));
     };
     let faces = mesh.elements().len();
     MeshSheet::from_mesh(mesh, thickness).map(|sheet| {
@@ -211,14 +230,34 @@ fn solid(
     })
 }
 
-fn check_thickness(thickness: Option<f64>) -> Result<(), Problem> {
-    match thickness {
-        Some(thickness) if !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&thickness) => {
-            let rule = format!("{SMALLEST_LENGTH:e} to {LARGEST_LENGTH:e} m");
-            let problem = format!("thickness must be from {rule}, got {thickness} m");
-            Err(Problem::new(problem).under("thickness"))
+impl Bounding {
+    fn check(&self) -> Result<(), Problem> {
+        match *self {
+            Self { thickness: Some(thickness), .. }
+                if !(SMALLEST_LENGTH..=LARGEST_LENGTH).contains(&thickness) =>
+            {
+                let rule = format!("{SMALLEST_LENGTH:e} to {LARGEST_LENGTH:e} m");
+                let problem = format!("thickness must be from {rule}, got {thickness} m");
+                Err(Problem::new(problem).under("thickness"))
+            }
+            Self { thickness: Some(_), weld_within: Some(_) } => Err(Problem::new(
+                "a plate takes its faces as they are: leave weld_within or thickness out",
+            )
+            .under("weld_within")),
+            Self { weld_within: Some(within), .. } if within.is_nan() || within < 0.0 => {
+                let problem = format!("weld_within must be at least 0 m, got {within} m");
+                Err(Problem::new(problem).under("weld_within"))
+            }
+            _ => Ok(()),
         }
-        _ => Ok(()),
+    }
+
+    /// The same in units of so many metres.
+    fn in_units(self, scale: f64) -> Self {
+        Self {
+            thickness: self.thickness.map(|length| length / scale),
+            weld_within: self.weld_within.map(|length| length / scale),
+        }
     }
 }
 
@@ -242,8 +281,9 @@ impl WrittenVolume {
                 .map_err(|problem| format!("{}: {problem}", path.display()))
         };
         let (file, scale) = (self.file.as_str(), self.scale);
-        let (grid, value, thickness) = (self.grid.as_deref(), Some(self.value), None);
-        let asked = Asked { what: "a volume", file, scale, grid, value, inside, thickness };
+        let (grid, value) = (self.grid.as_deref(), Some(self.value));
+        let bounding = Bounding::default();
+        let asked = Asked { what: "a volume", file, scale, grid, value, inside, bounding };
         built(asked, folder, surface)
     }
 }
@@ -257,30 +297,32 @@ fn others(path: &Path, is_volume: bool) -> Vec<PathBuf> {
 
 /// The solid of what `read` makes of a file.
 fn built(
-    Asked { what, file, scale, grid, value, inside, thickness }: Asked<'_>,
+    Asked { what, file, scale, grid, value, inside, bounding }: Asked<'_>,
     folder: Option<&Path>,
     read: impl FnOnce(&Path) -> Result<(TriangleMesh, Option<Samples>), String>,
 ) -> Result<BuiltMesh, Problem> {
     if scale.is_nan() || scale <= 0.0 || scale.is_infinite() {
         return Err(Problem::new(format!("scale must be positive, got {scale}")).under("scale"));
     }
-    check_thickness(thickness)?;
+    bounding.check()?;
     let of_file = |message: String| Problem::new(message).under("file");
     let Beside { path, stamp } =
         Beside::of(what, file, folder).map_err(|problem| problem.under("file"))?;
     let stamp = stamp.with(&others(&path, value.is_some()));
-    // A thickness is in metres, the solids that are kept in units of the file.
-    let thick = thickness.map(|thickness| thickness / scale);
+    // Lengths of the scene are in metres, the solids that are kept in units of the file.
+    let in_units = bounding.in_units(scale);
     let number = |name, number: Option<f64>| number.map(|number| (name, number.to_bits()));
     let grid = grid.map(str::to_owned);
-    let taken = number("value", value).or(number("thickness", thick));
+    let taken = number("value", value)
+        .or(number("thickness", in_units.thickness))
+        .or(number("weld_within", in_units.weld_within));
     let key: Key = (stamp, (taken, grid.clone(), inside));
     let (shape, findings, samples) = match SOLIDS.of(&key) {
         Some(known) => known,
         None => {
             let (mesh, samples) = read(&path).map_err(of_file)?;
             let faces = mesh.elements().len();
-            let (shape, findings) = solid(&mesh, thick)
+            let (shape, findings) = solid(&mesh, in_units)
                 .map_err(|error| of_file(format!("{}: {error}", path.display())))?;
             let made = (shape, findings, samples);
             // Another state of the file is of no use any more.
@@ -291,6 +333,7 @@ fn built(
         }
     };
     let scaled = shape.scaled(scale);
+    let Bounding { thickness, weld_within } = bounding;
     Ok(BuiltMesh {
         file: Some(file.to_owned()),
         scale,
@@ -298,6 +341,7 @@ fn built(
         value,
         inside,
         thickness,
+        weld_within,
         samples,
         findings: findings.scaled(scale),
         shape: scaled.map_err(|error| Problem::new(error.to_string()).under("scale"))?,

@@ -8,6 +8,7 @@ use std::fmt::{self, Display};
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use palpate::field::node::Node;
 use palpate::field::{Point, Quality, Shape};
 use palpate::mesh::{
     ContourError, ContourOptions, FitProgress, FittedMesh, Format, Report, Solid, TriangleMesh,
@@ -50,13 +51,13 @@ pub(super) fn run(
     let format = Format::of(output).ok_or_else(|| {
         Failure::file(output, "the name of a mesh must end in .obj, .stl, .ply or .glb")
     })?;
-    let (shape, mended) = match Format::of(&options.file) {
-        None => (shape(options)?, None),
-        Some(_) => {
-            let solid = solid(options)?;
-            let mended = mended(&solid, options, format)?;
-            (solid.into(), mended)
-        }
+    let shape = match Format::of(&options.file) {
+        None => shape(options)?,
+        Some(_) => solid(options)?.into(),
+    };
+    let mended = match own_faces(&shape, options) {
+        Some(faces) => Some(mended(&faces, options, format)?),
+        None => None,
     };
     interrupt.heed();
     let work = Work { options, shape: &shape, format, interrupt };
@@ -96,37 +97,65 @@ fn solid(options: &MeshOptions) -> Result<Solid<3, 3>, Failure> {
     if options.body.is_some() {
         return Err(Failure::file(&options.file, "a mesh has no bodies: leave --body out"));
     }
-    let solid = Solid::from_mesh(&super::mesh(options)?);
+    let solid = options.solid(&super::mesh(options)?);
     solid.map(|(solid, _)| solid).map_err(|error| Failure::file(&options.file, error))
 }
 
-/// The mended faces of a solid, if they bound it and no cells are asked for.
-fn mended(
-    solid: &Solid<3, 3>,
-    options: &MeshOptions,
-    format: Format,
-) -> Result<Option<Made>, Failure> {
-    let promise = solid.promise();
+/// The mended faces of a shape that is the solid of a mesh, moved and scaled, if they bound it and no cells are asked
+/// for.
+fn own_faces(shape: &Shape<3>, options: &MeshOptions) -> Option<TriangleMesh> {
+    let promise = shape.promise();
     let are_boundary = [promise.outside, promise.inside] == [Quality::Exact; 2];
     if !are_boundary || options.cell.is_some() || options.tolerance.is_some() {
-        return Ok(None);
+        return None;
     }
+    let (vertices, faces) = faces_of(shape)?;
+    TriangleMesh::new(vertices, faces).ok()
+}
+
+/// The vertices and faces of a shape that is the solid of a mesh, moved and scaled.
+fn faces_of(shape: &Shape<3>) -> Option<(Vec<Point<3>>, Vec<[u32; 3]>)> {
+    let changed = |of: &Shape<3>, change: &dyn Fn(Point<3>) -> Point<3>| {
+        let (vertices, faces) = faces_of(of)?;
+        Some((vertices.into_iter().map(change).collect(), faces))
+    };
+    match shape.node() {
+        Node::Opaque(opaque) => {
+            let solid: &Solid<3, 3> = opaque.custom()?;
+            Some((solid.vertices().to_vec(), solid.elements().to_vec()))
+        }
+        Node::Placed { pose, of } => changed(of, &|p| pose.transform_point(p)),
+        Node::Scaled { factor, of } => changed(of, &|p| p * *factor),
+        _ => None,
+    }
+}
+
+/// These faces as a file holds them.
+fn mended(
+    faces: &TriangleMesh,
+    options: &MeshOptions,
+    format: Format,
+) -> Result<Made, Failure> {
     let refused = |error: &dyn Display| Failure::file(&options.file, error);
-    let faces = solid.mesh().map_err(|error| refused(&error))?;
-    let mesh = faces.in_format(format).map_err(|error| refused(&error))?;
+    let mesh = faces.clone().in_format(format).map_err(|error| refused(&error))?;
     // No point of a triangle moves farther than its corners do.
     let moved = (0..faces.elements().len()).flat_map(|face| {
         let corners = faces.corners(face).into_iter().zip(mesh.corners(face));
         corners.map(|(from, to)| (to - from).norm())
     });
     let moved = moved.fold(0.0, f64::max) * (1.0 + 1e-12);
-    Ok(Some(Made { mesh, cell: None, error: [moved; 2], lost: None }))
+    Ok(Made { mesh, cell: None, error: [moved; 2], lost: None })
 }
 
 /// The shape of a scene.
 fn shape(options: &MeshOptions) -> Result<Shape<3>, Failure> {
     if options.weld {
         return Err(Failure::file(&options.file, "a scene has no vertices: leave --weld out"));
+    }
+    if options.weld_within.is_some() {
+        let problem = "a scene says itself how corners are joined: leave --weld-within out, and write \
+                       \"weld_within\" beside \"file\"";
+        return Err(Failure::file(&options.file, problem));
     }
     let named = input::scene(Some(&options.file))?;
     let AnyScene::Spatial(scene) = named.scene else {

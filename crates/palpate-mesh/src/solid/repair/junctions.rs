@@ -96,25 +96,30 @@ fn chains<const D: usize>(
         return Vec::new();
     }
     let at = |i: u32| vertices[i as usize];
-    let order = BallTree::new(vertices, &edges).order().to_vec();
-    let in_order: Vec<_> = order.iter().map(|i| edges[*i as usize].map(at)).collect();
-    let boxes = Boxes::new(&in_order);
-    let mut ends: Vec<u32> = edges.iter().flatten().copied().collect();
-    ends.sort_unstable();
-    ends.dedup();
     let mut between = vec![Vec::new(); edges.len()];
-    for end in ends {
-        let p = at(end);
-        boxes.overlapping(&Aabb { min: p, max: p }.grown(tolerance), |group| {
-            for edge in order.iter().skip(group * FAN).take(FAN).map(|i| *i as usize) {
-                let line = edges[edge].map(at);
-                if !edges[edge].contains(&end)
-                    && (is_between(line, p) || is_near(line, p, tolerance))
+    let lines: Vec<_> = edges.iter().map(|edge| edge.map(at)).collect();
+    for group in on_one_line(&lines, tolerance) {
+        let of_group: Vec<_> = group.iter().map(|edge| edges[*edge]).collect();
+        let order = BallTree::new(vertices, &of_group).order().to_vec();
+        let in_order: Vec<_> = order.iter().map(|i| lines[group[*i as usize]]).collect();
+        let boxes = Boxes::new(&in_order);
+        let mut ends: Vec<u32> = of_group.into_iter().flatten().collect();
+        ends.sort_unstable();
+        ends.dedup();
+        for end in ends {
+            let p = at(end);
+            boxes.overlapping(&Aabb { min: p, max: p }.grown(tolerance), |found| {
+                for edge in order.iter().skip(found * FAN).take(FAN).map(|i| group[*i as usize])
                 {
-                    between[edge].push(end);
+                    let line = lines[edge];
+                    if !edges[edge].contains(&end)
+                        && (is_between(line, p) || is_near(line, p, tolerance))
+                    {
+                        between[edge].push(end);
+                    }
                 }
-            }
-        });
+            });
+        }
     }
     let chain = |([first, last], mut between): ([u32; 2], Vec<u32>)| {
         let way = at(last) - at(first);
@@ -130,6 +135,65 @@ fn chains<const D: usize>(
     keep_closing(&mut chains);
     let parted = chains.into_iter().map(|chain| chain.corners);
     parted.filter(|corners| corners.len() > 2).collect()
+}
+
+/// Independent sums of the coordinates of a line. Lines with different coordinates differ in most of them.
+const SUMS: usize = 4;
+
+/// Room in a sum, in tolerances: more than its largest change with the line.
+const ROOM: f64 = 16.0;
+
+/// The groups of two or more edges that may lie on one line, within a tolerance [m]. Along an edge that is parted lie
+/// the edges that meet its parts; no other edge has to be compared with it.
+fn on_one_line<const D: usize>(edges: &[[Point<D>; 2]], tolerance: f64) -> Vec<Vec<usize>> {
+    let Some(around) = Aabb::around(edges.iter().flatten().copied()) else {
+        return Vec::new();
+    };
+    let (centre, size) = (around.centre(), around.half_extents().norm());
+    let tolerance = tolerance.max(ROOM * f64::EPSILON * (size + centre.norm()));
+    let mut groups = vec![(0..edges.len()).collect::<Vec<_>>()];
+    for sum in 0..SUMS {
+        let interval = |edge: &usize| {
+            let [a, b] = edges[*edge].map(|end| (end - centre).in_space());
+            let length = (b - a).norm();
+            let along = (b - a).normalized().unwrap_or(Vector::ZERO);
+            // The point of the line next to the centre, and the direction, of either sign.
+            let foot = a - along * a.dot(along);
+            let [x, y, z] = along.0;
+            let direction = [x * x, y * y, z * z, x * y, y * z, z * x].map(|x| x * size);
+            let coordinates = foot.0.into_iter().chain(direction).enumerate();
+            let middle: f64 = coordinates.map(|(i, x)| x * weight(9 * sum + i)).sum();
+            let room = ROOM * tolerance * (1.0 + size / length);
+            (middle - room, middle + room, *edge)
+        };
+        groups = groups
+            .iter()
+            .flat_map(|group| chained(group.iter().map(interval).collect()))
+            .collect();
+    }
+    groups
+}
+
+/// The sets of two or more intervals that are connected by overlaps.
+fn chained(mut intervals: Vec<(f64, f64, usize)>) -> Vec<Vec<usize>> {
+    intervals.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut groups, mut group, mut last) = (Vec::new(), Vec::new(), f64::NEG_INFINITY);
+    for (from, to, edge) in intervals {
+        if from > last {
+            groups.push(std::mem::take(&mut group));
+        }
+        last = last.max(to);
+        group.push(edge);
+    }
+    groups.push(group);
+    groups.retain(|group| group.len() > 1);
+    groups
+}
+
+/// The `i`-th of numbers from −1 to 1 that have no simple relation.
+fn weight(i: usize) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    2.0 * ((i + 1) as f64 * GOLDEN).fract() - 1.0
 }
 
 /// The corners along an edge of one element, from its lower end on.

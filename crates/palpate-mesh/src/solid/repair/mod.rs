@@ -20,6 +20,7 @@ pub(crate) use join::{Within, rounding_of};
 pub(super) use orient::Pieces;
 pub(super) use rims::{by_rim, sides};
 
+use junctions::Parted;
 use orient::{Doubled, Patch};
 
 use super::findings::Findings;
@@ -43,17 +44,14 @@ impl<const N: usize, const D: usize> Repair<N, D> {
     /// All steps but the search for faces that cross: equal vertices are welded, and those that are `within` so much of
     /// each other where that closes edges; elements with a vertex twice and doubled elements are dropped; neighbours are
     /// turned to agree on the inside; faces are parted at corners of others on their edges; openings are capped;
-    /// sheets within the solid are dropped; pieces that are inside out are turned.
+    /// sheets within the solid are dropped; pieces that are inside out are turned. Of a sheet the last steps are left
+    /// out.
     pub(super) fn of(mesh: &Mesh<N, D>, within: Within) -> Self {
         let (vertices, names) = weld(mesh.vertices());
         let mut findings = Findings { faces: mesh.elements().len(), ..Findings::default() };
         findings.welded = mesh.vertices().len() - vertices.len();
         let named = |element: &[u32; N]| element.map(|index| names[index as usize]);
-        let mut elements: Vec<_> = mesh.elements().iter().map(named).collect();
-        let joined = join::join(&vertices, &mut elements, within, mesh.rounding());
-        (findings.joined, findings.moved) = (joined.corners, joined.farthest);
-        elements.retain(|element| (1..N).all(|i| !element[..i].contains(&element[i])));
-        findings.degenerate = findings.faces - elements.len();
+        let elements: Vec<_> = mesh.elements().iter().map(named).collect();
         let mut repair = Self {
             vertices,
             elements,
@@ -63,17 +61,25 @@ impl<const N: usize, const D: usize> Repair<N, D> {
             is_flat: Vec::new(),
             is_sheet: false,
         };
-        repair.drop_duplicates();
-        let parted = junctions::part(&repair.vertices, &mut repair.elements, joined.tolerance);
-        repair.findings.parted = parted.edges;
-        repair.findings.moved = repair.findings.moved.max(parted.farthest);
-        (repair.findings.turned, repair.findings.one_sided) =
-            orient::agree(&mut repair.elements);
+        repair.clean();
+        repair.part(0.0);
+        let Joined { corners, farthest, tolerance } =
+            join::join(&repair.vertices, &mut repair.elements, within, mesh.rounding());
+        if corners > 0 {
+            (repair.findings.joined, repair.findings.moved) = (corners, farthest);
+            repair.clean();
+        }
+        if tolerance > 0.0 {
+            repair.part(tolerance);
+        }
         repair.caps = vec![None; repair.elements.len()];
         let caps = cap::close(&repair.vertices, &mut repair.elements);
         repair.caps.extend(caps.of_element.into_iter().map(Some));
         (repair.findings.openings, repair.is_flat) = (caps.openings, caps.is_flat);
         repair.drop_membranes();
+        if repair.is_sheet {
+            return repair;
+        }
         repair.findings.own = repair.caps.iter().filter(|cap| cap.is_none()).count();
         repair.pieces = orient::outwards(&repair.vertices, &mut repair.elements);
         (repair.findings.inside_out, repair.findings.nested) =
@@ -82,6 +88,25 @@ impl<const N: usize, const D: usize> Repair<N, D> {
             repair.findings.crowded_rims += usize::from(at_rim.len() > 2);
         }
         repair
+    }
+
+    /// Drops elements with a vertex twice and doubled ones, and turns neighbours to agree on the inside.
+    fn clean(&mut self) {
+        let before = self.elements.len();
+        self.elements.retain(|element| (1..N).all(|i| !element[..i].contains(&element[i])));
+        self.findings.degenerate += before - self.elements.len();
+        self.drop_duplicates();
+        let (turned, one_sided) = orient::agree(&mut self.elements);
+        self.findings.turned += turned;
+        self.findings.one_sided = one_sided;
+    }
+
+    /// Parts faces at corners of others on their edges, within a tolerance [m].
+    fn part(&mut self, tolerance: f64) {
+        let Parted { edges, farthest } =
+            junctions::part(&self.vertices, &mut self.elements, tolerance);
+        self.findings.parted += edges;
+        self.findings.moved = self.findings.moved.max(farthest);
     }
 
     /// Drops the sheets within the solid, and what closes them; none if the mesh as a whole is a sheet.
@@ -141,7 +166,7 @@ impl<const N: usize, const D: usize> Repair<N, D> {
         }
         let mut dropped = is_dropped.iter();
         self.elements.retain(|_| dropped.next() == Some(&false));
-        self.findings.duplicates = is_dropped.iter().filter(|dropped| **dropped).count();
+        self.findings.duplicates += is_dropped.iter().filter(|dropped| **dropped).count();
     }
 }
 

@@ -408,6 +408,11 @@ fn mesh() -> Value {
                 "type": "number",
                 "exclusiveMinimum": 0,
             },
+            "weld_within": {
+                "description": "Corners at open edges that are at most this far apart are joined where that closes edges [m]; if left out, those equal up to rounding; with 0, those exactly equal.",
+                "type": "number",
+                "minimum": 0,
+            },
         },
         "oneOf": [
             { "required": ["file"], "not": { "anyOf": [{ "required": ["vertices"] }, { "required": ["faces"] }] } },
