@@ -50,7 +50,7 @@ pub(super) fn run(
     let format = Format::of(output).ok_or_else(|| {
         Failure::file(output, "the name of a mesh must end in .obj, .stl, .ply or .glb")
     })?;
-    let (shape, mended) = match Format::of(&options.file) {
+    let (shape, mended) = match Format::of_input(&options.file) {
         None => (shape(options)?, None),
         Some(_) => {
             let solid = solid(options)?;

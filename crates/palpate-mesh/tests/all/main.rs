@@ -7,9 +7,11 @@
 
 mod contours;
 mod files;
+mod gltf;
 mod hard;
 mod planes;
 mod samples;
 mod solids;
+mod text;
 #[cfg(feature = "files")]
 mod writing;
