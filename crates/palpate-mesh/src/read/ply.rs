@@ -112,7 +112,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
             _ => {}
         }
     }
-    let rest = reader.get_ref().trim_ascii();
+    let rest = reader.get_ref().trim_ascii_start();
     if !rest.is_empty() {
         let read = &bytes[..bytes.len() - rest.len()];
         let place = if is_binary {
@@ -122,7 +122,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
         };
         return Err(Format::Ply.malformed(format_args!(
             "{place}: {} bytes follow the last row that its header counts",
-            rest.len()
+            rest.trim_ascii_end().len()
         )));
     }
     of_polygons(vertices, &sizes, &corners, Format::Ply)
