@@ -68,7 +68,7 @@ impl Kind {
     pub(crate) fn advice(self, path: &Path) -> String {
         let path_name = path.display();
         match self {
-            Self::Mesh(format) if Format::of(path) == Some(format) => {
+            Self::Mesh(format) if Format::of_input(path) == Some(format) => {
                 format!("`palpate mesh {path_name}` checks it")
             }
             Self::Mesh(format) => {

@@ -218,7 +218,7 @@ fn refused(path: &Path, error: &ReadError) -> Failure {
     if let Some(volume) = as_volume(path) {
         return volume;
     }
-    let named = Format::of(path);
+    let named = Format::of_input(path);
     let mut head = Vec::new();
     match &error.problem {
         ReadProblem::Unreadable(_) | ReadProblem::TooLarge { .. } => {
@@ -273,7 +273,7 @@ written is closed, faces outwards and keeps edges sharp; what it says of its err
 /// The options of `palpate mesh`.
 #[derive(Args, Debug)]
 pub(crate) struct MeshOptions {
-    /// The mesh file to check: .obj, .stl, .ply or .glb. With --output, the scene or the mesh to make a
+    /// The mesh file to check: .obj, .stl, .ply, .glb or .gltf. With --output, the scene or the mesh to make a
     /// mesh of.
     pub(crate) file: PathBuf,
     /// Write the surface of the scene as a mesh; the name ends in .obj, .stl, .ply or .glb.

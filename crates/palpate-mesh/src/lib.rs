@@ -6,7 +6,7 @@
 //! [`Mesh::new`] checks that all numbers are finite, that elements name vertices that
 //! exist, and that there is at least one element. [`Mesh::report`] says whether the mesh is
 //! watertight, and lists its defects. With the feature `files`, which is on by default,
-//! `Mesh::open`, `read_file` and `read` take OBJ, STL, PLY and GLB files.
+//! `Mesh::open`, `read_file` and `read` take OBJ, STL, PLY and glTF files.
 //!
 //! ```
 //! use palpate_field::Vector;
@@ -26,6 +26,7 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare exact numbers"))]
 
 mod contour;
+mod encoding;
 mod instances;
 mod mesh;
 #[cfg(feature = "files")]
@@ -37,6 +38,8 @@ mod tree;
 mod write;
 
 pub use contour::{ContourError, ContourOptions, FitProgress, FittedMesh};
+#[doc(hidden)]
+pub use encoding::utf16_is_little_endian;
 #[doc(hidden)]
 pub use instances::instances;
 pub use mesh::MeshError;

@@ -3,11 +3,9 @@
 
 //! Meshes as bytes of files.
 
-use std::borrow::Cow;
 use std::io::{self, Write};
 
-use gltf::binary::{Glb, Header};
-use palpate_field::{Point, Vector};
+use palpate_field::Vector;
 
 use crate::mesh::{MeshError, TriangleMesh, single};
 use crate::read::Format;
@@ -82,16 +80,19 @@ impl TriangleMesh {
     }
 
     fn write_stl(&self, mut out: impl Write) -> io::Result<()> {
-        let triangles: Vec<_> = (0..self.elements().len())
-            .map(|face| {
-                let corners = self.corners(face);
-                let across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-                let normal = across.normalized().unwrap_or(Vector::ZERO);
-                let single = |p: Point<3>| stl_io::Vector::new(p.0.map(|x| x as f32));
-                stl_io::Triangle { normal: single(normal), vertices: corners.map(single) }
-            })
-            .collect();
-        stl_io::write_stl(&mut out, triangles.iter())
+        out.write_all(&[0; 80])?;
+        out.write_all(&(self.elements().len() as u32).to_le_bytes())?;
+        for face in 0..self.elements().len() {
+            let corners = self.corners(face);
+            let across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            let normal = across.normalized().unwrap_or(Vector::ZERO);
+            for coordinate in [normal].iter().chain(&corners).flat_map(|p| p.0) {
+                out.write_all(&(coordinate as f32).to_le_bytes())?;
+            }
+            // No attributes.
+            out.write_all(&[0; 2])?;
+        }
+        Ok(())
     }
 
     fn write_ply(&self, mut out: impl Write) -> io::Result<()> {
@@ -114,7 +115,7 @@ impl TriangleMesh {
         Ok(())
     }
 
-    fn write_glb(&self, out: impl Write) -> io::Result<()> {
+    fn write_glb(&self, mut out: impl Write) -> io::Result<()> {
         let (vertices, indices) = (self.vertices().len(), 3 * self.elements().len());
         let places = || self.vertices().iter().map(|p| p.0.map(|x| x as f32));
         let each = |of: fn(f32, f32) -> f32, from: f32| {
@@ -131,12 +132,19 @@ impl TriangleMesh {
         let json = format!(
             r#"{{"asset":{{"version":"2.0","generator":"palpate"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":{vertices},"type":"VEC3","min":{min},"max":{max}}},{{"bufferView":1,"componentType":5125,"count":{indices},"type":"SCALAR"}}],"bufferViews":[{{"buffer":0,"byteOffset":0,"byteLength":{middle},"target":34962}},{{"buffer":0,"byteOffset":{middle},"byteLength":{rest},"target":34963}}],"buffers":[{{"byteLength":{length}}}]}}"#
         );
-        let glb = Glb {
-            // The writer counts the length.
-            header: Header { magic: *b"glTF", version: 2, length: 0 },
-            json: Cow::Owned(json.into_bytes()),
-            bin: Some(Cow::Owned(bytes)),
-        };
-        glb.to_writer(out).map_err(io::Error::other)
+        let mut json = json.into_bytes();
+        json.resize(json.len().next_multiple_of(4), b' ');
+        // Header and heads of chunks; the data are numbers of 4 bytes.
+        let all = 12 + 8 + json.len() + 8 + length;
+        let too_long = |_| io::Error::other("a GLB has 4294967295 bytes at most");
+        let number = |n: usize| u32::try_from(n).map(u32::to_le_bytes).map_err(too_long);
+        out.write_all(b"glTF\x02\0\0\0")?;
+        out.write_all(&number(all)?)?;
+        for (kind, chunk) in [(b"JSON", &json), (b"BIN\0", &bytes)] {
+            out.write_all(&number(chunk.len())?)?;
+            out.write_all(kind)?;
+            out.write_all(chunk)?;
+        }
+        Ok(())
     }
 }

@@ -3,6 +3,8 @@
 
 //! Text from the bytes of a file.
 
+use palpate_mesh::utf16_is_little_endian;
+
 /// The bytes of a file as text: UTF-8, with or without a byte order mark, which is left out.
 ///
 /// # Errors
@@ -17,7 +19,7 @@
 /// assert!(error.to_string().starts_with("the file is UTF-16 (little-endian)"));
 /// ```
 pub fn utf8(bytes: &[u8]) -> Result<&str, NotUtf8> {
-    if let Some(is_little_endian) = utf16(bytes) {
+    if let Some(is_little_endian) = utf16_is_little_endian(bytes) {
         return Err(NotUtf8::Utf16 { is_little_endian });
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
@@ -60,16 +62,6 @@ pub enum NotUtf8 {
         /// The byte.
         byte: u8,
     },
-}
-
-/// `Some(true)` for UTF-16 of little-endian units, `Some(false)` for big-endian ones. Without a
-/// byte order mark a text whose first character is of ASCII is known by the zero beside it.
-fn utf16(bytes: &[u8]) -> Option<bool> {
-    match bytes {
-        [0xff, 0xfe, ..] | [1..=255, 0, 1..=255, 0, ..] | [1..=255, 0] => Some(true),
-        [0xfe, 0xff, ..] | [0, 1..=255, 0, 1..=255, ..] | [0, 1..=255] => Some(false),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -39,7 +39,7 @@
 //!
 //! # Features
 //!
-//! On by default: `mesh-files` reads OBJ, STL, PLY and GLB; `grid-files` reads grids and volumes of scanners; `parallel`
+//! On by default: `mesh-files` reads OBJ, STL, PLY and glTF; `grid-files` reads grids and volumes of scanners; `parallel`
 //! shares grids, batches and worlds among threads; `plot` draws; `render` renders; `scene` reads and writes scene files;
 //! `serde` implements serde's traits for plain data; `std-loop` runs servos on the machine's clock and in threads.
 //! Off by default: `local` has local searches from the

@@ -90,7 +90,7 @@ pub(crate) enum Command {
     /// Sample a scene on a grid, with a certified deviation, and write it as a file.
     #[command(after_help = crate::grid::EXAMPLES)]
     Grid(GridOptions),
-    /// Check whether a mesh file (OBJ, STL, PLY, GLB) is watertight, and list its defects.
+    /// Check whether a mesh file (OBJ, STL, PLY, GLB, glTF) is watertight, and list its defects.
     #[command(after_help = crate::mesh::EXAMPLES)]
     Mesh(MeshOptions),
     /// Print the JSON schema of scene files, or of questions and answers.

@@ -51,7 +51,7 @@ pub(super) fn run(
     let format = Format::of(output).ok_or_else(|| {
         Failure::file(output, "the name of a mesh must end in .obj, .stl, .ply or .glb")
     })?;
-    let shape = match Format::of(&options.file) {
+    let shape = match Format::of_input(&options.file) {
         None => shape(options)?,
         Some(_) => solid(options)?.into(),
     };

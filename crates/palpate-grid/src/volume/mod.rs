@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::{MultiGzDecoder, ZlibDecoder};
 use palpate_field::{Point, Vector};
-use palpate_mesh::ContourError;
+use palpate_mesh::{ContourError, utf16_is_little_endian};
 
 use crate::grid::unravelled;
 
@@ -333,8 +333,8 @@ impl Volume {
         };
         let head = read().map_err(|problem| VolumeError { path: path.to_owned(), problem })?;
         let samples = match Format::of(&name_of(path)) {
-            Some(Format::Nrrd) => nrrd::samples_file(&head),
-            Some(Format::MetaImage) => meta::samples_file(&head),
+            Some(Format::Nrrd) => nrrd::samples_file(without_mark(&head)),
+            Some(Format::MetaImage) => meta::samples_file(without_mark(&head)),
             _ => None,
         };
         let beside = samples.map(|name| path.with_file_name(name));
@@ -349,15 +349,33 @@ impl Volume {
     pub fn from_bytes(bytes: &[u8], path: &Path) -> Result<Self, VolumeProblem> {
         let name = name_of(path);
         let folder = path.parent().unwrap_or(Path::new(""));
-        match Format::of(&name) {
-            Some(Format::Nrrd) => nrrd::read(bytes, folder),
-            Some(Format::MetaImage) => meta::read(bytes, folder),
+        let format = Format::of(&name);
+        if matches!(format, Some(Format::Nrrd | Format::MetaImage)) {
+            check_encoding(bytes)?;
+        }
+        match format {
+            Some(Format::Nrrd) => nrrd::read(without_mark(bytes), folder),
+            Some(Format::MetaImage) => meta::read(without_mark(bytes), folder),
             Some(Format::Nifti) => nifti::read(bytes),
             Some(Format::NumPy) => npy::read(bytes),
             Some(Format::NanoVdb) => nanovdb::read(bytes, None),
             None if name.ends_with(".vdb") => Err(VolumeProblem::OpenVdb),
             None => Err(VolumeProblem::Ending { name }),
         }
+    }
+}
+
+/// The bytes of a head that is text, without the mark of UTF-8 with which some editors begin.
+fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
+/// Refuses a head in UTF-16, of which a reader of UTF-8 would find nothing.
+fn check_encoding(bytes: &[u8]) -> Result<(), VolumeProblem> {
+    match utf16_is_little_endian(bytes) {
+        None => Ok(()),
+        Some(true) => Err(VolumeProblem::Utf16 { encoding: "UTF-16LE" }),
+        Some(false) => Err(VolumeProblem::Utf16 { encoding: "UTF-16BE" }),
     }
 }
 
@@ -437,6 +455,14 @@ pub enum VolumeProblem {
     Ending {
         /// The name.
         name: String,
+    },
+    /// Its head is UTF-16.
+    #[error(
+        "its head is text in {encoding}: save it as UTF-8, for example with `iconv -f {encoding} -t UTF-8`"
+    )]
+    Utf16 {
+        /// `UTF-16LE` or `UTF-16BE`.
+        encoding: &'static str,
     },
     /// It is a file of OpenVDB.
     #[error(

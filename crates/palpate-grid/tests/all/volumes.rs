@@ -250,6 +250,25 @@ fn a_head_ends_at_its_first_blank_line() {
     assert_eq!(volume.samples()[0], 2570.0);
 }
 
+/// A mark hid the first key, and a head in UTF-16 was told to lack what it has.
+#[test]
+fn heads_are_utf_8_with_or_without_a_mark() {
+    for (name, bytes) in [("a.nrrd", nrrd("raw")), ("a.mha", meta(false))] {
+        let marked = [b"\xef\xbb\xbf", &bytes[..]].concat();
+        let volume = Volume::from_bytes(&marked, Path::new(name)).unwrap();
+        assert_eq!(
+            volume.samples(),
+            Volume::from_bytes(&bytes, Path::new(name)).unwrap().samples()
+        );
+        for mark in [&b"\xff\xfe"[..], b""] {
+            let units = bytes[..40].iter().flat_map(|byte| [*byte, 0]);
+            let units: Vec<u8> = mark.iter().copied().chain(units).collect();
+            let error = Volume::from_bytes(&units, Path::new(name)).unwrap_err().to_string();
+            assert!(error.starts_with("its head is text in UTF-16LE"), "{error}");
+        }
+    }
+}
+
 /// What lies before the samples was not looked at, and the samples were read from the wrong place.
 #[test]
 fn what_a_head_says_of_other_places_is_refused() {

@@ -3,10 +3,8 @@
 
 //! Reading of mesh files.
 //!
-//! Files of meshes.
-//!
-//! Other crates parse; the modules here check what those crates take for granted of a file,
-//! and build the mesh. Reading takes memory in proportion to the size of the file.
+//! A complaint says in our own words what is wrong, and where. Reading takes memory in
+//! proportion to the size of the file.
 
 use std::fs::File;
 use std::io::Read;
@@ -20,11 +18,12 @@ mod glb;
 mod obj;
 mod ply;
 mod stl;
+mod text;
 
 /// The largest file that is read [bytes]: 1 GiB.
 pub const LARGEST_FILE: u64 = 1 << 30;
 
-/// Characters of a parser's complaint that are kept.
+/// Characters of a complaint that are kept.
 const LONGEST_COMPLAINT: usize = 300;
 
 /// A format of mesh files.
@@ -37,12 +36,13 @@ pub enum Format {
     Stl,
     /// PLY, ASCII or binary of either byte order.
     Ply,
-    /// Binary glTF 2.0: the triangles of its scene, where its nodes put them.
+    /// Binary glTF 2.0: the triangles of its scene, where its nodes put them. The same as text
+    /// is read if it holds its data.
     Glb,
 }
 
 impl Format {
-    /// The format that the ending of a file's name says.
+    /// The format in which a file is written whose name has this ending.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
@@ -52,6 +52,14 @@ impl Format {
             "glb" => Some(Self::Glb),
             _ => None,
         }
+    }
+
+    /// The format as which a file is read whose name has this ending: also `.gltf`, which is
+    /// glTF as text, and is not written.
+    #[must_use]
+    pub fn of_input(path: &Path) -> Option<Self> {
+        let is_text = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("gltf"));
+        if is_text { Some(Self::Glb) } else { Self::of(path) }
     }
 
     /// Whether its files hold coordinates in single precision.
@@ -71,10 +79,11 @@ impl Format {
     /// ```
     #[must_use]
     pub fn of_content(bytes: &[u8]) -> Option<Self> {
-        if bytes.starts_with(b"glTF") {
+        if bytes.starts_with(b"glTF") || glb::is_likely_text(bytes) {
             return Some(Self::Glb);
         }
-        if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r\n") {
+        let begin = text::without_mark(bytes);
+        if begin.starts_with(b"ply\n") || begin.starts_with(b"ply\r") {
             return Some(Self::Ply);
         }
         if stl::is_likely(bytes) {
@@ -94,8 +103,8 @@ impl Format {
         }
     }
 
-    /// The complaint that a file is not what this format asks for. Parsers may quote a line of the
-    /// file, which may be all of it where bytes only begin as a text does: long ones are cut.
+    /// The complaint that a file is not what this format asks for. A name in a file may be as
+    /// long as the file: long complaints are cut.
     fn malformed(self, problem: impl std::fmt::Display) -> ReadProblem {
         let mut problem = problem.to_string();
         if let Some((end, _)) = problem.char_indices().nth(LONGEST_COMPLAINT) {
@@ -106,7 +115,7 @@ impl Format {
     }
 }
 
-/// Reads a mesh file whose name ends in `.obj`, `.stl`, `.ply` or `.glb`.
+/// Reads a mesh file whose name ends in `.obj`, `.stl`, `.ply`, `.glb` or `.gltf`.
 ///
 /// Coordinates are taken as metres; [`scaled`](crate::Mesh::scaled) makes metres of other
 /// units. Faces with more than three corners are cut into triangles.
@@ -144,7 +153,8 @@ impl TriangleMesh {
 
 fn from_path(path: &Path) -> Result<TriangleMesh, ReadProblem> {
     let ending = || path.extension().unwrap_or_default().to_string_lossy().into_owned();
-    let format = Format::of(path).ok_or_else(|| ReadProblem::Ending { ending: ending() })?;
+    let format =
+        Format::of_input(path).ok_or_else(|| ReadProblem::Ending { ending: ending() })?;
     // A pipe or a device would never end, and opening one may wait for ever.
     if !std::fs::metadata(path)?.is_file() {
         return Err(ReadProblem::NoFile);
@@ -172,14 +182,15 @@ pub fn read(bytes: &[u8], format: Format) -> Result<TriangleMesh, ReadProblem> {
         Format::Obj => obj::read(bytes),
         Format::Stl => stl::read(bytes),
         Format::Ply => ply::read(bytes),
-        Format::Glb => glb::read(bytes),
+        // Where nodes place the vertices, their numbers do not show that they were single.
+        Format::Glb => glb::read(bytes).map(|mesh| mesh.with_rounding(SINGLE)),
     }
 }
 
 /// That a text ends in the line of a complaint, if it does: it may be cut off.
 fn cut_off(text: &str, line: usize) -> &'static str {
-    let is_last = text.lines().nth(line).is_none();
-    if is_last && !text.ends_with('\n') {
+    let is_last = text::lines(text).nth(line).is_none();
+    if is_last && !text.ends_with(['\n', '\r']) {
         "; the file ends there: it may be cut off"
     } else {
         ""
@@ -222,7 +233,9 @@ fn of_polygons(
 #[non_exhaustive]
 pub enum ReadProblem {
     /// The file name has no ending of a known format.
-    #[error("the ending {ending:?} is none of .obj, .stl, .ply and .glb: convert the file")]
+    #[error(
+        "the ending {ending:?} is none of .obj, .stl, .ply, .glb and .gltf: convert the file"
+    )]
     Ending {
         /// The ending, after the last dot.
         ending: String,
@@ -254,6 +267,37 @@ pub enum ReadProblem {
         what: &'static str,
         /// What to do instead.
         advice: &'static str,
+    },
+    /// The file cannot be shown without an extension of glTF that this crate does not read.
+    #[error("it needs the glTF extension {name}, which is not read: {advice}")]
+    Extension {
+        /// The name of the extension.
+        name: String,
+        /// What to do instead.
+        advice: &'static str,
+    },
+    /// The text is UTF-16.
+    #[error(
+        "it is text in {encoding}: save it as UTF-8, for example with `iconv -f {encoding} -t UTF-8`"
+    )]
+    Utf16 {
+        /// `UTF-16LE` or `UTF-16BE`.
+        encoding: &'static str,
+    },
+    /// The nodes of a small file place much more than it describes.
+    #[error(
+        "its nodes and instances place {placed} {what}, and a file of {bytes} bytes may place {most}: \
+         export a part of the scene, or join what lies together"
+    )]
+    Unfolds {
+        /// Triangles, vertices or primitives.
+        what: &'static str,
+        /// How many would be placed.
+        placed: usize,
+        /// The size of the file.
+        bytes: usize,
+        /// The most that a file of this size may place.
+        most: usize,
     },
     /// A face has more than [`MOST_CORNERS`] corners.
     #[error("face {face} has {corners} corners, {MOST_CORNERS} at most: export triangles")]

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! STL, with stl_io.
+//! STL.
 //!
-//! A file is binary if it is as long as its count of triangles says, whatever its header
-//! says: headers of binary files may begin as those of text do.
+//! A file is binary if it holds the triangles that its count says, whatever its header says:
+//! headers of binary files may begin as texts do. No text does so: the letters in place of
+//! the count would stand for more triangles than a file of the largest size holds.
+//! Normals are not used, and may be anything.
 
-use std::io::Cursor;
+use palpate_field::{LARGEST_LENGTH, Point, Vector};
 
-use palpate_field::Vector;
-
-use super::Format;
-use super::ReadProblem;
+use super::text::{Lines, check_encoding, lines, quoted, without_mark};
+use super::{Format, ReadProblem};
 use crate::mesh::TriangleMesh;
 
 /// Bytes of a binary header, of the count behind it, and of a triangle.
@@ -19,95 +19,52 @@ const HEADER: usize = 80;
 const COUNT: usize = 4;
 const TRIANGLE: usize = 50;
 
+/// Where the corners of a triangle begin, behind its normal, and the bytes of a coordinate.
+const CORNERS: usize = 12;
+const COORDINATE: usize = 4;
+
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, ReadProblem> {
-    let mut vertices = Vec::new();
-    if is_binary(bytes) {
-        check_length(bytes)?;
-        let mut copy = bytes.to_vec();
-        copy[..HEADER].fill(0);
-        append(&copy, &mut vertices, |i| format!("byte {}", HEADER + COUNT + i * TRIANGLE))?;
-    } else if bytes.len() < HEADER + COUNT && !begins_as_text(bytes) {
-        let length = bytes.len();
-        return Err(Format::Stl.malformed(format_args!(
-            "it ends at byte {length}: a binary file has {} bytes before its triangles, and a text begins with `solid`",
-            HEADER + COUNT
-        )));
+    let vertices = if is_binary(bytes) {
+        check_rest(bytes)?;
+        of_binary(bytes)
     } else {
-        // Some programs write capitals, which stl_io does not read.
-        let text = String::from_utf8_lossy(without_mark(bytes)).to_ascii_lowercase();
-        for solid in solids(&text) {
-            append(solid.as_bytes(), &mut vertices, |i| line_of_facet(&text, i))?;
+        check_encoding(bytes)?;
+        if !is_text(bytes) {
+            return Err(cut_off_or_neither(bytes));
         }
-    }
+        Words::new(&String::from_utf8_lossy(without_mark(bytes))).vertices()?
+    };
     let corners = (0..vertices.len() as u32).collect::<Vec<_>>();
     let (triangles, _) = corners.as_chunks::<3>();
     Ok(TriangleMesh::new(vertices, triangles.to_vec())?.welded())
 }
 
-/// Refuses a binary file that is shorter than its count of triangles says, or has whole triangles beyond it.
-fn check_length(bytes: &[u8]) -> Result<(), ReadProblem> {
-    match binary_length(bytes) {
-        Some(length) if length > bytes.len() => {
-            let triangles = (length - HEADER - COUNT) / TRIANGLE;
-            let found = bytes.len();
-            Err(Format::Stl.malformed(format_args!(
-                "byte {HEADER}: {triangles} triangles are counted, which take {length} bytes, and \
-                 the file ends at byte {found}: it is cut off"
-            )))
-        }
-        Some(length)
-            if length < bytes.len() && (bytes.len() - length).is_multiple_of(TRIANGLE) =>
-        {
-            let triangles = (length - HEADER - COUNT) / TRIANGLE;
-            let more = (bytes.len() - length) / TRIANGLE;
-            Err(Format::Stl.malformed(format_args!(
-                "byte {HEADER}: {triangles} triangles are counted, and {more} more follow"
-            )))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Where the `i`-th facet of a text begins: "facet at line 12", and that the text is cut off if it ends there.
-fn line_of_facet(text: &str, i: usize) -> String {
-    let is_facet = |(_, line): &(usize, &str)| line.trim_start().starts_with("facet");
-    let mut facets = text.lines().enumerate().filter(is_facet);
-    let Some((line, _)) = facets.nth(i) else {
-        return format!(
-            "line {}, where the file ends: it may be cut off",
-            text.lines().count()
-        );
-    };
-    let is_cut = facets.next().is_none() && !text.contains("endsolid");
-    let cut = if is_cut { ", the last: the file is cut off" } else { "" };
-    format!("facet at line {}{cut}", line + 1)
-}
-
 /// `true` if a file has the length of a binary one, or begins as a text does and goes on with a
 /// facet.
 pub(super) fn is_likely(bytes: &[u8]) -> bool {
+    /// The facets of a text begin within so many words: comments and a name have fewer.
+    const SOON: usize = 100;
     let words = without_mark(bytes).split(u8::is_ascii_whitespace);
-    let mut words = words.filter(|word| !word.is_empty());
-    let is_text = words.next().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
-        && words.take(SOON).any(|word| word.eq_ignore_ascii_case(b"facet"));
-    is_text || bytes.len() > HEADER + COUNT && Some(bytes.len()) == binary_length(bytes)
+    let mut words = words.filter(|word| !word.is_empty()).take(SOON);
+    is_text(bytes) && words.any(|word| word.eq_ignore_ascii_case(b"facet"))
+        || bytes.len() > HEADER + COUNT && Some(bytes.len()) == binary_length(bytes)
 }
-
-/// The facets of a text begin within so many words: a name has fewer.
-const SOON: usize = 100;
 
 fn is_binary(bytes: &[u8]) -> bool {
-    binary_length(bytes).is_some_and(|length| bytes.len() == length || !begins_as_text(bytes))
+    binary_length(bytes).is_some_and(|length| length <= bytes.len())
 }
 
-fn begins_as_text(bytes: &[u8]) -> bool {
-    let start = without_mark(bytes).trim_ascii_start();
-    start.first_chunk::<5>().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
-}
-
-/// The bytes behind the mark with which some editors begin texts in UTF-8.
-fn without_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+/// `true` if one of the first lines begins with `solid`, and none of them has a zero, which
+/// headers of binary files have.
+fn is_text(bytes: &[u8]) -> bool {
+    /// Comments and blank lines may come before the solid [bytes].
+    const SOON: usize = 2000;
+    let head = without_mark(&bytes[..bytes.len().min(SOON)]);
+    let is_solid = |line: &[u8]| {
+        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        words.next().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
+    };
+    !head.contains(&0) && head.split(|byte| matches!(byte, b'\n' | b'\r')).any(is_solid)
 }
 
 /// The length of a binary file with the count of triangles that `bytes` would give.
@@ -117,50 +74,192 @@ fn binary_length(bytes: &[u8]) -> Option<usize> {
     Some(triangles.saturating_mul(TRIANGLE).saturating_add(HEADER + COUNT))
 }
 
-/// The solids of a text file, each with the name that stl_io asks for.
-fn solids(text: &str) -> Vec<String> {
-    let mut solids: Vec<String> = Vec::new();
-    let mut is_open = false;
-    for line in text.lines() {
-        let line = line.trim();
-        match line.split_whitespace().next() {
-            None => {}
-            Some("solid") if !is_open => {
-                is_open = true;
-                solids.push("solid of a file\n".to_owned());
+/// Refuses a binary file with whole triangles beyond those that are counted. Other bytes, and
+/// zeros, are no triangles.
+fn check_rest(bytes: &[u8]) -> Result<(), ReadProblem> {
+    let length = binary_length(bytes).unwrap_or(bytes.len());
+    let rest = bytes.get(length..).unwrap_or_default();
+    if rest.len().is_multiple_of(TRIANGLE) && rest.iter().any(|byte| *byte != 0) {
+        let triangles = (length - HEADER - COUNT) / TRIANGLE;
+        let more = rest.len() / TRIANGLE;
+        return Err(Format::Stl.malformed(format_args!(
+            "byte {HEADER}: {triangles} triangles are counted, and {more} more follow"
+        )));
+    }
+    Ok(())
+}
+
+/// The complaint about what is no text and no whole binary file.
+fn cut_off_or_neither(bytes: &[u8]) -> ReadProblem {
+    let found = bytes.len();
+    let Some(length) = binary_length(bytes) else {
+        return Format::Stl.malformed(format_args!(
+            "it ends at byte {found}: a binary file has {} bytes before its triangles, and a text begins with `solid`",
+            HEADER + COUNT
+        ));
+    };
+    let triangles = (length - HEADER - COUNT) / TRIANGLE;
+    Format::Stl.malformed(format_args!(
+        "byte {HEADER}: {triangles} triangles are counted, which take {length} bytes, and the \
+         file ends at byte {found}: it is cut off"
+    ))
+}
+
+/// The corners of a binary file, three for each triangle.
+fn of_binary(bytes: &[u8]) -> Vec<Point<3>> {
+    let length = binary_length(bytes).unwrap_or(bytes.len());
+    let (triangles, _) = bytes[HEADER + COUNT..length].as_chunks::<TRIANGLE>();
+    let corners = |triangle: &[u8; TRIANGLE]| {
+        std::array::from_fn::<_, 3, _>(|corner| {
+            Vector(std::array::from_fn(|axis| {
+                let start = CORNERS + COORDINATE * (3 * corner + axis);
+                let bytes = std::array::from_fn(|i| triangle[start + i]);
+                f64::from(f32::from_le_bytes(bytes))
+            }))
+        })
+    };
+    triangles.iter().flat_map(corners).collect()
+}
+
+/// The words of a text, whatever their case, each with its line.
+struct Words<'a> {
+    lines: Lines<'a>,
+    /// The number of the line, counted from 1.
+    line: usize,
+    /// What is left of the line.
+    rest: std::str::SplitAsciiWhitespace<'a>,
+}
+
+impl<'a> Words<'a> {
+    fn new(text: &'a str) -> Self {
+        Self { lines: lines(text), line: 0, rest: "".split_ascii_whitespace() }
+    }
+
+    /// The corners of all facets of all solids, three for each.
+    fn vertices(mut self) -> Result<Vec<Point<3>>, ReadProblem> {
+        let mut vertices = Vec::new();
+        // What stands before the first solid is a comment.
+        while let Some(word) = self.next() {
+            let is_solid = word.eq_ignore_ascii_case("solid");
+            self.skip_line();
+            if is_solid {
+                break;
             }
-            word => {
-                is_open = is_open && word != Some("endsolid");
-                match solids.last_mut() {
-                    Some(solid) => {
-                        solid.push_str(line);
-                        solid.push('\n');
-                    }
-                    // What does not begin as a solid is for stl_io to refuse.
-                    None => solids.push(format!("{line}\n")),
-                }
+        }
+        let mut is_open = true;
+        while let Some(word) = self.next() {
+            if is_open && word.eq_ignore_ascii_case("facet") {
+                self.facet(&mut vertices)?;
+            } else if word.eq_ignore_ascii_case("solid") {
+                is_open = true;
+                self.skip_line();
+            } else if is_open && self.is_end(word, "solid")? {
+                is_open = false;
+                self.skip_line();
+            } else if is_open {
+                return Err(self.other_than("`facet` or `endsolid`", word));
+            } else {
+                return Err(self.other_than("`solid`", word));
+            }
+        }
+        if is_open {
+            return Err(self.wrong("the file ends without `endsolid`: it is cut off"));
+        }
+        Ok(vertices)
+    }
+
+    /// Reads what follows `facet`.
+    fn facet(&mut self, vertices: &mut Vec<Point<3>>) -> Result<(), ReadProblem> {
+        const LATER: [&str; 5] = ["facet", "vertex", "endloop", "endfacet", "endsolid"];
+        // The normal comes first.
+        loop {
+            let word = self.word("`outer loop`")?;
+            if word.eq_ignore_ascii_case("outer") {
+                break;
+            }
+            if LATER.iter().any(|later| word.eq_ignore_ascii_case(later)) {
+                return Err(self.other_than("`outer loop`", word));
+            }
+        }
+        self.expect("loop")?;
+        for _ in 0..3 {
+            self.expect("vertex")?;
+            let mut place = [0.0; 3];
+            for coordinate in &mut place {
+                *coordinate = self.coordinate()?;
+            }
+            vertices.push(Vector(place));
+        }
+        for part in ["loop", "facet"] {
+            let end = format!("`end{part}`");
+            let word = self.word(&end)?;
+            if !self.is_end(word, part)? {
+                return Err(self.other_than(&end, word));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether `word` ends a part, in one word or two: `endloop` or `end loop`.
+    fn is_end(&mut self, word: &str, part: &str) -> Result<bool, ReadProblem> {
+        if word.eq_ignore_ascii_case("end") {
+            self.expect(part)?;
+            return Ok(true);
+        }
+        let (end, ended) = word.split_at_checked("end".len()).unwrap_or((word, ""));
+        Ok(end.eq_ignore_ascii_case("end") && ended.eq_ignore_ascii_case(part))
+    }
+
+    fn expect(&mut self, expected: &str) -> Result<(), ReadProblem> {
+        let quoted = format!("`{expected}`");
+        let word = self.word(&quoted)?;
+        if word.eq_ignore_ascii_case(expected) {
+            Ok(())
+        } else {
+            Err(self.other_than(&quoted, word))
+        }
+    }
+
+    fn coordinate(&mut self) -> Result<f64, ReadProblem> {
+        let word = self.word("a coordinate")?;
+        let number = word.parse().map(|x: f32| f64::from(x));
+        number.ok().filter(|x| x.abs() <= LARGEST_LENGTH).ok_or_else(|| {
+            let rule = "a coordinate is a finite number of at most 1e15 in size";
+            self.wrong(&format!("{rule}, got {}", quoted(word)))
+        })
+    }
+
+    /// The next word; `expected` says of which kind.
+    fn word(&mut self, expected: &str) -> Result<&'a str, ReadProblem> {
+        self.next().ok_or_else(|| {
+            self.wrong(&format!("the file ends before {expected} of a facet: it is cut off"))
+        })
+    }
+
+    fn next(&mut self) -> Option<&'a str> {
+        loop {
+            if let Some(word) = self.rest.next() {
+                return Some(word);
+            }
+            let line = self.lines.next()?;
+            self.line += 1;
+            let is_comment = ["#", ";", "//"].iter().any(|mark| line.trim().starts_with(mark));
+            if !is_comment {
+                self.rest = line.split_ascii_whitespace();
             }
         }
     }
-    solids
-}
 
-/// Appends the vertices of a file; `place` says where its `i`-th triangle is, all solids counted.
-fn append(
-    file: &[u8],
-    vertices: &mut Vec<Vector<f64, 3>>,
-    place: impl Fn(usize) -> String,
-) -> Result<(), ReadProblem> {
-    let wrong = |i: usize, error: std::io::Error| {
-        Format::Stl.malformed(format_args!("{}: {error}", place(i)))
-    };
-    let known = vertices.len() / 3;
-    let mut file = Cursor::new(file);
-    let triangles =
-        stl_io::create_stl_reader(&mut file).map_err(|error| wrong(known, error))?;
-    for (i, triangle) in triangles.enumerate() {
-        let triangle = triangle.map_err(|error| wrong(known + i, error))?;
-        vertices.extend(triangle.vertices.map(|vertex| Vector(vertex.0.map(f64::from))));
+    /// Passes over what is left of the line: a name, which may be of several words.
+    fn skip_line(&mut self) {
+        self.rest = "".split_ascii_whitespace();
     }
-    Ok(())
+
+    fn other_than(&self, expected: &str, word: &str) -> ReadProblem {
+        self.wrong(&format!("{expected} should stand there, got {}", quoted(word)))
+    }
+
+    fn wrong(&self, problem: &str) -> ReadProblem {
+        Format::Stl.malformed(format_args!("line {}: {problem}", self.line))
+    }
 }

@@ -7,10 +7,12 @@
 
 mod contours;
 mod files;
+mod gltf;
 mod hard;
 mod joins;
 mod planes;
 mod samples;
 mod solids;
+mod text;
 #[cfg(feature = "files")]
 mod writing;
