@@ -9,14 +9,16 @@
 
 use std::fs::File;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use flate2::read::{MultiGzDecoder, ZlibDecoder};
 use palpate_field::{Point, Vector};
 use palpate_mesh::{ContourError, utf16_is_little_endian};
 
+use self::head::LONGEST_HEAD;
 use crate::grid::unravelled;
 
+mod head;
 mod meta;
 mod nanovdb;
 mod nifti;
@@ -26,13 +28,6 @@ mod surface;
 
 /// The size of the largest file that is read, in bytes: 1 GiB.
 pub const LARGEST_VOLUME: u64 = 1 << 30;
-
-/// The longest head of text [bytes].
-const LONGEST_HEAD: usize = 1 << 16;
-
-/// What turns coordinates to the left, the back and the top of a patient into those that all volumes have, as NIfTI: to
-/// the right, the front and the top.
-const LEFT_POSTERIOR: [f64; 3] = [-1.0, -1.0, 1.0];
 
 /// A format of files of volumes.
 #[derive(Clone, Copy, Debug)]
@@ -100,7 +95,7 @@ const SQUARE: f64 = 1e-3;
 ///
 /// [`open`](Self::open) reads NRRD, MetaImage, NIfTI, NumPy and NanoVDB files, with the spacing, place and
 /// orientation of their heads, in metres. Where the head tells how a patient lies, x is to the right, y to the front and
-/// z to the top, whatever the format.
+/// z to the top, whatever the format. The place is that of ITK or nibabel; where they leave it open, the file is refused.
 ///
 /// ```
 /// use palpate_field::Vector;
@@ -405,19 +400,24 @@ fn bytes(path: &Path) -> Result<Vec<u8>, VolumeProblem> {
 
 /// The bytes of a file beside a head, which names it.
 fn beside(folder: &Path, name: &str) -> Result<Vec<u8>, VolumeProblem> {
-    let mut parts = Path::new(name).components();
-    let is_name =
-        matches!((parts.next(), parts.next()), (Some(std::path::Component::Normal(_)), None));
-    if !is_name {
-        return Err(VolumeProblem::Elsewhere { name: name.to_owned() });
+    let elsewhere = || VolumeProblem::Elsewhere { name: name.to_owned() };
+    let mut parts = Path::new(name).components().filter(|part| *part != Component::CurDir);
+    if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None)) {
+        return Err(elsewhere());
     }
     let path = folder.join(name);
     // The folder of a file that is named alone is empty.
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    if !path.canonicalize()?.starts_with(folder.canonicalize()?) {
-        return Err(VolumeProblem::Elsewhere { name: name.to_owned() });
-    }
-    bytes(&path)
+    let read = || {
+        if !path.canonicalize()?.starts_with(folder.canonicalize()?) {
+            return Err(elsewhere());
+        }
+        bytes(&path)
+    };
+    read().map_err(|problem| match problem {
+        VolumeProblem::Elsewhere { .. } => problem,
+        problem => VolumeProblem::Beside { name: name.to_owned(), problem: Box::new(problem) },
+    })
 }
 
 /// Why a file is no volume.
@@ -490,6 +490,14 @@ pub enum VolumeProblem {
     Elsewhere {
         /// The name.
         name: String,
+    },
+    /// The file that its head names for the samples cannot be had.
+    #[error("its head names the file {name:?} for the samples: {problem}")]
+    Beside {
+        /// The name.
+        name: String,
+        /// What is wrong with that file.
+        problem: Box<VolumeProblem>,
     },
     /// It breaks the rules of its format.
     #[error("it is no good {format}: {problem}")]
@@ -570,6 +578,8 @@ enum Kind {
     U16,
     I32,
     U32,
+    I64,
+    U64,
     F32,
     F64,
 }
@@ -588,7 +598,7 @@ impl Kind {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
             Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
+            Self::I64 | Self::U64 | Self::F64 => 8,
         }
     }
 }
@@ -604,13 +614,21 @@ struct Stored {
 }
 
 impl Stored {
+    fn wrong(&self, problem: String) -> VolumeProblem {
+        VolumeProblem::Malformed { format: self.format, problem }
+    }
+
+    /// The bytes of the samples, unpacked.
+    fn length(&self) -> Result<usize, VolumeProblem> {
+        self.count
+            .checked_mul(self.kind.bytes())
+            .ok_or_else(|| self.wrong("it has too many samples".to_owned()))
+    }
+
     /// The samples at the beginning of `bytes`.
     fn read(&self, bytes: &[u8]) -> Result<Vec<f32>, VolumeProblem> {
-        let wrong = |problem: String| VolumeProblem::Malformed { format: self.format, problem };
-        let length = self
-            .count
-            .checked_mul(self.kind.bytes())
-            .ok_or_else(|| wrong("it has too many samples".to_owned()))?;
+        let wrong = |problem: String| self.wrong(problem);
+        let length = self.length()?;
         let short =
             |found: usize| wrong(format!("its samples take {length} bytes, it has {found}"));
         if self.count > MOST_SAMPLES {
@@ -661,6 +679,8 @@ impl Stored {
             Kind::U16 => all!(u16),
             Kind::I32 => all!(i32),
             Kind::U32 => all!(u32),
+            Kind::I64 => all!(i64),
+            Kind::U64 => all!(u64),
             Kind::F32 => all!(f32),
             Kind::F64 => all!(f64),
         }
@@ -673,14 +693,4 @@ fn inflated(from: impl Read, length: usize) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     from.take(length as u64 + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
-}
-
-/// The numbers of a text, `N` of them.
-fn list<T: std::str::FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
-    let parsed: Option<Vec<T>> = text
-        .split(|c: char| c.is_whitespace() || c == ',')
-        .filter(|part| !part.is_empty())
-        .map(|part| part.parse().ok())
-        .collect();
-    parsed?.try_into().ok()
 }

@@ -6,7 +6,8 @@
 
 use palpate_field::Vector;
 
-use super::{Kind, Packing, Stored, Volume, VolumeProblem, list};
+use super::head::list;
+use super::{Kind, Packing, Stored, Volume, VolumeProblem};
 use crate::grid::{indices, raveled};
 
 const FORMAT: &str = ".npy";

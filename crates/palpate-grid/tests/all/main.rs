@@ -9,4 +9,6 @@
 mod files;
 mod grids;
 #[cfg(feature = "volumes")]
+mod places;
+#[cfg(feature = "volumes")]
 mod volumes;

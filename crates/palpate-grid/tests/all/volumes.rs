@@ -63,7 +63,7 @@ fn meta(is_compressed: bool) -> Vec<u8> {
     let said = if is_compressed { "True" } else { "False" };
     let head = format!(
         "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = True\nCompressedData = {said}\n\
-         TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\nElementSpacing = 1 0.5 2\nDimSize = 20 24 16\n\
+         TransformMatrix = -1 0 0 0 -1 0 0 0 1\nOffset = 0 0 0\nElementSpacing = 1 0.5 2\nDimSize = 20 24 16\n\
          ElementType = MET_SHORT\nElementDataFile = LOCAL\n"
     );
     let big: Vec<u8> = densities().into_iter().flat_map(i16::to_be_bytes).collect();
@@ -160,7 +160,7 @@ fn places_in_a_patient_are_the_same_in_every_format() {
         [&bytes[..at], to.as_bytes(), &bytes[at + from.len()..]].concat()
     };
     let nrrd = text(nrrd("raw"), "right-anterior-superior", "left-posterior-superior");
-    let meta = text(meta(false), "Offset", "AnatomicalOrientation = RAI\nOffset");
+    let meta = text(meta(false), "-1 0 0 0 -1 0 0 0 1", "1 0 0 0 1 0 0 0 1");
     for (name, bytes) in [("ball.nrrd", nrrd), ("ball.mha", meta)] {
         let volume = Volume::from_bytes(&bytes, Path::new(name)).unwrap();
         let last = volume.node([19, 23, 15]) - Vector([-0.019, -0.0115, 0.03]);
@@ -305,7 +305,7 @@ fn a_head_says_where_its_first_node_is() {
         let at = of(origin, &format!("{mins}{centers}")).unwrap();
         assert!((at - Vector(millimetres) * 1e-3).norm() < 1e-15, "{centers}: {at:?}");
     }
-    assert_eq!(of(origin, &format!("{mins}\n{origin}")), Ok(Vector::ZERO));
+    assert!(of(origin, &format!("{mins}\n{origin}")).unwrap_err().contains("`axis mins`"));
     let space = "right-anterior-superior";
     assert!(of(space, "3D-left-handed").unwrap_err().contains("space \"3D-left-handed\""));
     let kinds = "domain domain domain";
@@ -400,7 +400,7 @@ fn what_is_damaged_is_refused() {
     assert!(said(b"", "scan.dcm").contains("dcm2niix"));
     assert!(said(&nrrd("bzip2"), "a.nrrd").contains("encoding \"bzip2\" is not read"));
     let head = nrrd("raw");
-    let head = String::from_utf8_lossy(&head[..200]);
+    let head = String::from_utf8_lossy(&head[..head.len() - little().len()]);
     for (sizes, expected) in
         [("200 240 160", "bytes, it has"), ("2000 2400 1600", "268435456 at most")]
     {
