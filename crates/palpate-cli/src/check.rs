@@ -430,7 +430,10 @@ impl fmt::Display for Answer {
         let guesses = self.meshes.iter().filter(|mesh| !mesh.openings.is_empty()).count();
         let verdict = match guesses {
             0 => "good".to_owned(),
-            count => format!("not sure, the repair of {} is a guess", counted(count, "mesh", "meshes")),
+            count => format!(
+                "not sure, the repair of {} is a guess",
+                counted(count, "mesh", "meshes")
+            ),
         };
         writeln!(
             f,

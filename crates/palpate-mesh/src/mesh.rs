@@ -161,6 +161,9 @@ impl<const N: usize, const D: usize> Mesh<N, D> {
     }
 }
 
+/// Half a unit in the last place of 1, in single precision.
+pub(crate) const SINGLE_ROUNDING: f64 = 1.0 / 16_777_216.0;
+
 /// A point in single precision.
 pub(crate) fn single<const D: usize>(p: Point<D>) -> Point<D> {
     Vector(p.0.map(|x| f64::from(x as f32)))

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use palpate_field::Point;
 
-use crate::mesh::{MOST_CORNERS, MeshError, TriangleMesh, triangulate};
+use crate::mesh::{MOST_CORNERS, MeshError, SINGLE_ROUNDING, TriangleMesh, triangulate};
 
 mod glb;
 mod obj;
@@ -183,7 +183,7 @@ pub fn read(bytes: &[u8], format: Format) -> Result<TriangleMesh, ReadProblem> {
         Format::Stl => stl::read(bytes),
         Format::Ply => ply::read(bytes),
         // Where nodes place the vertices, their numbers do not show that they were single.
-        Format::Glb => glb::read(bytes).map(|mesh| mesh.with_rounding(SINGLE)),
+        Format::Glb => glb::read(bytes).map(|mesh| mesh.with_rounding(SINGLE_ROUNDING)),
     }
 }
 

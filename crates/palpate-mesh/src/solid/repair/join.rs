@@ -12,6 +12,7 @@ use std::collections::{HashMap, HashSet};
 use palpate_field::Point;
 
 use super::rims::{by_rim, sides};
+use crate::mesh::SINGLE_ROUNDING;
 
 /// Corners are joined within so many roundings of the largest coordinate.
 const ROUNDINGS: f64 = 16.0;
@@ -29,8 +30,7 @@ const CRACK: f64 = 1e-6;
 /// those of double precision.
 const DIGITS: std::ops::RangeInclusive<usize> = 6..=9;
 
-/// Half a unit in the last place of 1, in single and in double precision.
-const SINGLE: f64 = 1.0 / 16_777_216.0;
+/// Half a unit in the last place of 1, in double precision.
 const DOUBLE: f64 = 0.5 * f64::EPSILON;
 
 /// How far apart corners may be that are joined.
@@ -221,7 +221,7 @@ pub(crate) fn rounding_of<const D: usize>(vertices: &[Point<D>]) -> f64 {
             }
         })
     };
-    let precise = if is_single { SINGLE } else { DOUBLE };
+    let precise = if is_single { SINGLE_ROUNDING } else { DOUBLE };
     if has_digits(DIGITS.start() - 1) {
         return precise;
     }
