@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use palpate_live::{Live, LiveError};
 
-use crate::arguments::ProfileChoice;
+use crate::arguments::{ProfileChoice, Reading};
 use crate::arguments::numbers::{count, within};
 use crate::input;
 use crate::interrupt::Interrupt;
@@ -35,8 +35,8 @@ const FINGERS: usize = 10;
 
 pub(crate) fn run(options: &LiveOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     // An error of the scene is reported as by every command, before anything is served.
-    input::scene(options.scene.as_deref())?;
-    let (name, text) = input::scene_text(options.scene.as_deref())?;
+    input::scene(options.scene.as_deref(), options.reading)?;
+    let (name, text) = input::scene_text(options.scene.as_deref(), options.reading)?;
     let points = options.points.unwrap_or(if options.scene.is_none() { FINGERS } else { 1 });
     let served = palpate_live::LiveOptions {
         points,
@@ -144,7 +144,7 @@ pub(crate) fn beside(
     rate: f64,
     interrupt: &Interrupt,
 ) -> Result<Option<Served>, Failure> {
-    let (name, text) = input::scene_text(None)?;
+    let (name, text) = input::gallery();
     let options = palpate_live::LiveOptions {
         points: FINGERS,
         rate,
@@ -211,6 +211,8 @@ pub(crate) struct LiveOptions {
     /// Ticks a second [Hz].
     #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = within(1.0, 100_000.0, "Hz"))]
     pub(crate) rate: f64,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }
 
 /// Where the page is served.

@@ -13,7 +13,7 @@ use same_file::Handle;
 use serde_json::Value;
 
 use super::{Destination, Target, beside, folder, shown};
-use crate::input;
+use crate::arguments::Reading;
 use crate::outcome::Failure;
 
 /// The files that a run reads and writes, all different by whatever name.
@@ -36,10 +36,10 @@ enum Identity {
 
 /// The files of meshes, volumes and grids that a scene names, of the samples of volumes too. None of what is no scene:
 /// that is told where it is read.
-fn files_of_scene(path: &Path) -> Vec<PathBuf> {
+fn files_of_scene(path: &Path, reading: Reading) -> Vec<PathBuf> {
     // A pipe can be read once only.
     let is_file = fs::metadata(path).is_ok_and(|found| found.is_file());
-    let text = if is_file { input::bytes(path).unwrap_or_default() } else { Vec::new() };
+    let text = if is_file { reading.bytes(path).unwrap_or_default() } else { Vec::new() };
     let (mut waiting, mut names) = (Vec::new(), Vec::new());
     waiting.extend(serde_json::from_slice::<Value>(&text));
     while let Some(value) = waiting.pop() {
@@ -64,16 +64,19 @@ fn files_of_scene(path: &Path) -> Vec<PathBuf> {
 
 impl Files {
     /// A run that reads `inputs`, and what scenes among them name.
-    pub(crate) fn reading<'a>(inputs: impl IntoIterator<Item = &'a Path>) -> Self {
+    pub(crate) fn reading<'a>(
+        inputs: impl IntoIterator<Item = &'a Path>,
+        reading: Reading,
+    ) -> Self {
         // A missing input is an error where it is read; a pipe cannot be overwritten.
         let known = |path: PathBuf| {
             let is_file = fs::metadata(&path).is_ok_and(|metadata| metadata.is_file());
             let handle = is_file.then(|| Handle::from_path(&path).ok())??;
             Some((path, Identity::Existing(handle)))
         };
-        let inputs = inputs
-            .into_iter()
-            .flat_map(|input| std::iter::once(input.to_owned()).chain(files_of_scene(input)));
+        let inputs = inputs.into_iter().flat_map(|input| {
+            std::iter::once(input.to_owned()).chain(files_of_scene(input, reading))
+        });
         Self { inputs: inputs.filter_map(known).collect(), outputs: Vec::new() }
     }
 
@@ -210,7 +213,7 @@ mod tests {
         fs::create_dir(folder.path("sub")).unwrap();
         fs::hard_link(folder.path("in.csv"), folder.path("hard.csv")).unwrap();
         let input = folder.path("in.csv");
-        let mut files = Files::reading([input.as_path()]);
+        let mut files = Files::reading([input.as_path()], Reading::default());
         let mut names = vec!["in.csv", "./in.csv", "sub/../in.csv", "hard.csv"];
         #[cfg(unix)]
         {
