@@ -12,7 +12,8 @@ use palpate::grid::Volume;
 use same_file::Handle;
 use serde_json::Value;
 
-use super::{Destination, Target, beside, folder, shown};
+use super::beside::Beside;
+use super::{Destination, Target, folder, shown};
 use crate::arguments::Reading;
 use crate::outcome::Failure;
 
@@ -131,8 +132,8 @@ impl Files {
         if is_special(path) {
             return Ok(direct(path));
         }
-        // Creating and removing a file shows that the folder can be written to.
-        beside(&target).map_err(|error| {
+        // Creating a file shows that the folder can be written to.
+        Beside::new(&target).map_err(|error| {
             let folder = folder(&target).display().to_string();
             wrong(format!("its folder {} cannot be written to: {error}", shown(&folder)))
         })?;
