@@ -85,7 +85,8 @@ impl<const D: usize> Function<D> {
             }
         });
         call::set_depth(before);
-        let ended = || Err(PyRuntimeError::new_err("Python ends: functions are called no more"));
+        let ended =
+            || Err(PyRuntimeError::new_err("Python ends: functions are called no more"));
         if let Err(error) = asked.unwrap_or_else(ended) {
             values.fill(f64::NAN);
             call::fail(error);

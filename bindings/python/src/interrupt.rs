@@ -73,7 +73,9 @@ fn awaited<T>(answer: Receiver<T>) -> PyResult<T> {
     loop {
         match answer.recv_timeout(A_WHILE) {
             Ok(answer) => return Ok(answer),
-            Err(RecvTimeoutError::Timeout) => attached(|py| py.check_signals()).unwrap_or(Ok(()))?,
+            Err(RecvTimeoutError::Timeout) => {
+                attached(|py| py.check_signals()).unwrap_or(Ok(()))?
+            }
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(PyRuntimeError::new_err("the work ended without an answer"));
             }

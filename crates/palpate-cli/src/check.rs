@@ -15,8 +15,8 @@ use palpate::scene::{
 };
 use serde::Serialize;
 
-use crate::arguments::Reading;
 use crate::answers::Bounds;
+use crate::arguments::Reading;
 use crate::input::{Bakes, folder, longest_edge, other_than_scene};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, counted, shown};

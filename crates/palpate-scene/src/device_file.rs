@@ -133,7 +133,8 @@ pub fn device_from_json(bytes: &[u8]) -> Result<DeviceProfile, SceneError> {
 /// that names it.
 pub fn device_from_file(path: impl AsRef<Path>) -> Result<DeviceProfile, SceneError> {
     let path = path.as_ref();
-    let bytes = read_file(path, LARGEST_FILE).map_err(|error| SceneProblem::of_file(path, &error))?;
+    let bytes =
+        read_file(path, LARGEST_FILE).map_err(|error| SceneProblem::of_file(path, &error))?;
     device_from_json(&bytes)
 }
 

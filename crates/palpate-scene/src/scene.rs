@@ -237,7 +237,8 @@ impl Scene {
     /// As `from_file`.
     pub fn from_file_within(path: impl AsRef<Path>, most: u64) -> Result<Self, SceneError> {
         let path = path.as_ref();
-        let bytes = read_file(path, most).map_err(|error| SceneProblem::of_file(path, &error))?;
+        let bytes =
+            read_file(path, most).map_err(|error| SceneProblem::of_file(path, &error))?;
         Self::from_bytes_in(&bytes, path.parent().unwrap_or(Path::new("")))
     }
 

@@ -19,10 +19,10 @@ use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as 
 use palpate::sim::HandPath;
 use palpate::vibration::{ACTUATORS, Actuator, actuator_named};
 
-use crate::arguments::{ProfileChoice, Reading};
 use crate::arguments::numbers::{
     count, length, length_or_zero, positive, within, zero_or_more,
 };
+use crate::arguments::{ProfileChoice, Reading};
 use crate::input::{self, Named};
 use crate::interrupt::Interrupt;
 use crate::live::PageOptions;

@@ -18,8 +18,8 @@ use palpate::sim::{
 };
 use report::Report;
 
-use crate::arguments::{ProfileChoice, Reading};
 use crate::arguments::numbers::{count, positive, within, zero_or_more};
+use crate::arguments::{ProfileChoice, Reading};
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination, Files};

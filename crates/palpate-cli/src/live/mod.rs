@@ -12,10 +12,11 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use palpate::scene::read_file;
 use palpate_live::{Live, LiveError};
 
-use crate::arguments::{ProfileChoice, Reading};
 use crate::arguments::numbers::{count, within};
+use crate::arguments::{ProfileChoice, Reading};
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
@@ -29,6 +30,9 @@ const AWAY: Duration = Duration::from_secs(3);
 
 /// How long edits that wait may take when the program ends.
 const SETTLING: Duration = Duration::from_secs(1);
+
+/// The largest file of a port and a token [bytes].
+const LONGEST_TOKEN: u64 = 4096;
 
 /// The contact points of the hand on the built-in gallery: two hands.
 const FINGERS: usize = 10;
@@ -254,8 +258,8 @@ impl Place {
     /// order keep theirs.
     fn of(asked: &PageOptions, scene: Option<&Path>) -> Result<Self, Failure> {
         if let Some(file) = &asked.token_file {
-            let token = match std::fs::read_to_string(file) {
-                Ok(text) => Some(text.trim().to_owned()),
+            let token = match read_file(file, LONGEST_TOKEN) {
+                Ok(text) => Some(String::from_utf8_lossy(&text).trim().to_owned()),
                 Err(error) if error.kind() == ErrorKind::NotFound => None,
                 Err(error) => return Err(Failure::file(file, error)),
             };
@@ -267,7 +271,8 @@ impl Place {
         let name = scene.map_or_else(|| "page".to_owned(), name_for);
         let file = folder.join("palpate").join(name);
         // A damaged file counts as missing.
-        let text = std::fs::read_to_string(&file).unwrap_or_default();
+        let text = read_file(&file, LONGEST_TOKEN).unwrap_or_default();
+        let text = String::from_utf8_lossy(&text);
         let (port, token) = text.trim().split_once(' ').unzip();
         let port = port.and_then(|port| port.parse().ok());
         let is_token =

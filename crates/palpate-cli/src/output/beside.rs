@@ -111,7 +111,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let place = folder.path().join("out.csv");
         let named_too = || Beside::Named(named().tempfile_in(folder.path()).unwrap());
-        for beside in [Beside::new(&place).unwrap(), Beside::new(&place).unwrap(), named_too()] {
+        for beside in [Beside::new(&place).unwrap(), Beside::new(&place).unwrap(), named_too()]
+        {
             beside.file().write_all(b"whole").unwrap();
             beside.persist(&place).unwrap();
             assert_eq!(fs::read(&place).unwrap(), b"whole");

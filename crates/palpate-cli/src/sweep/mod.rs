@@ -28,7 +28,8 @@ pub(crate) fn run(options: &SweepOptions, interrupt: &Interrupt) -> Result<Outco
     let mut files = Files::reading(inputs.into_iter().flatten(), options.reading);
     let picture = options.plot.as_deref().map(|path| Picture::new(&mut files, path));
     let picture = picture.transpose()?;
-    let named = input::moving(Some(&options.scene), options.motion.as_deref(), options.reading)?;
+    let named =
+        input::moving(Some(&options.scene), options.motion.as_deref(), options.reading)?;
     match &named.scene {
         AnyScene::Planar(_) if options.plane.is_some() => Err(Failure::input(
             "--plane is for scenes in space; this scene is in the plane, and drawn whole",

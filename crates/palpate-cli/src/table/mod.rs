@@ -218,7 +218,10 @@ fn refused(path: &Path, line: u64, error: csv::Error) -> Failure {
     match error.into_kind() {
         ErrorKind::Utf8 { pos, .. } => {
             let line = pos.as_ref().map_or(line, csv::Position::line);
-            Failure::file(path, format_args!("line {line} is not UTF-8; save the file as UTF-8"))
+            Failure::file(
+                path,
+                format_args!("line {line} is not UTF-8; save the file as UTF-8"),
+            )
         }
         ErrorKind::Io(error) if error.kind() == IoErrorKind::InvalidData => {
             Failure::file(path, format_args!("line {line}: {error}"))

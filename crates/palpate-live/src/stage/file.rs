@@ -11,6 +11,10 @@ use palpate::scene::utf8;
 /// The largest scene [bytes]: what the pages are told of it is a few times as large.
 pub(super) const LARGEST: usize = 4 << 20;
 
+/// The most nodes of a scene, references followed: an edit builds all of them, and the next one
+/// waits for that.
+pub(super) const MOST_NODES: usize = 20_000;
+
 /// The most links that a path leads over, as on Linux.
 const MOST_LINKS: usize = 40;
 
@@ -54,7 +58,8 @@ pub(super) fn replace(file: &Path, text: &str, is_new: bool) -> Result<()> {
 fn behind_links(file: &Path) -> Result<PathBuf> {
     let end = std::fs::canonicalize(file).unwrap_or_else(|_| end_of_links(file));
     if !folder(&end).canonicalize()?.starts_with(folder(file).canonicalize()?) {
-        let why = "is a link out of its folder: open the file that it leads to, or save as another";
+        let why =
+            "is a link out of its folder: open the file that it leads to, or save as another";
         return Err(Error::new(ErrorKind::InvalidInput, why));
     }
     Ok(end)
