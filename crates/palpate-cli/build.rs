@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! Sets the version that the program prints. It includes the commit if that is known: from
+//! Compiles `src/closed.c`, and sets the version that the program prints. It includes the commit if that is known: from
 //! `PALPATE_COMMIT`, or in a release build from git.
 
 use std::env::var;
@@ -9,6 +9,7 @@ use std::path::Path;
 use std::process::Command;
 
 fn main() {
+    mark_closed_output();
     println!("cargo::rerun-if-env-changed=PALPATE_COMMIT");
     // Other builds are not made again after each commit.
     let is_release = var("PROFILE").is_ok_and(|profile| profile == "release");
@@ -18,6 +19,18 @@ fn main() {
         version += &format!(" ({commit})");
     }
     println!("cargo::rustc-env=PALPATE_VERSION={version}");
+}
+
+/// Links what looks whether standard output is closed to the program.
+fn mark_closed_output() {
+    println!("cargo::rerun-if-changed=src/closed.c");
+    if var("CARGO_CFG_UNIX").is_err() {
+        return;
+    }
+    // An object: of a library, nothing would ask for its one function, which is called before `main`.
+    for object in cc::Build::new().file("src/closed.c").compile_intermediates() {
+        println!("cargo::rustc-link-arg-bin=palpate={}", object.display());
+    }
 }
 
 /// The commit that is checked out, if this file is one of its files.

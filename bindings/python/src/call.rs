@@ -9,6 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
+use crate::ending::{attached, detach};
 use crate::pool::Pool;
 
 /// The first exception of a function: a search cannot carry it.
@@ -119,12 +120,13 @@ pub(crate) fn set_depth(before: u32) {
 }
 
 /// Keeps an exception for the end of this thread's call, unless there is one.
-pub(crate) fn fail(py: Python<'_>, error: PyErr) {
+pub(crate) fn fail(error: PyErr) {
     match slot() {
         Some(slot) => {
             slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
         }
-        None => error.write_unraisable(py, None),
+        // Where Python ends, nobody is told.
+        None => _ = attached(|py| error.write_unraisable(py, None)),
     }
 }
 
@@ -139,7 +141,7 @@ pub(crate) fn detached<T: Send>(
     work: impl FnOnce() -> T + Send,
 ) -> PyResult<T> {
     let call = Call::default();
-    let answer = py.detach(|| call.run(work));
+    let answer = detach(py, || call.run(work));
     call.ended()?;
     Ok(answer)
 }
@@ -151,7 +153,7 @@ pub(crate) fn detached_in<T: Send>(
     work: impl FnOnce() -> T + Send,
 ) -> PyResult<T> {
     let call = Call::default();
-    let answer = py.detach(|| pool.run(&call, work));
+    let answer = detach(py, || pool.run(&call, work));
     call.ended()?;
     Ok(answer)
 }

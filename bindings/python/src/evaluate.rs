@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use crate::answers::Fields;
 use crate::arrays::{Numbers, few, misshapen, numbers, place, writable};
 use crate::call::Call;
+use crate::ending::detach;
 use crate::error::OrRaise;
 use crate::interrupt::A_WHILE;
 use crate::pool::{self, Pool};
@@ -234,7 +235,7 @@ fn in_chunks<T: Copy + Send + Sync, const K: usize>(
         let start = Instant::now();
         let call = Call::default();
         let work = |(points, outs)| work(points, outs);
-        let done = py.detach(|| match pool {
+        let done = detach(py, || match pool {
             Some(pool) if batch.len() > 1 => {
                 pool.run(&call, || batch.into_par_iter().try_for_each(work))
             }

@@ -5,11 +5,12 @@
 
 use numpy::IntoPyArray;
 use palpate::field::{Aabb, Bounds, CustomField, Point, Promise, Shape, Vector};
-use pyo3::exceptions::{PyRecursionError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyRecursionError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::arrays::numbers;
 use crate::call;
+use crate::ending::attached;
 use crate::shape::PyShape;
 
 /// Half of the step of central differences, as a share of the size of what is looked at.
@@ -28,12 +29,13 @@ pub(crate) struct Function<const D: usize> {
 impl<const D: usize> Function<D> {
     /// What Python calls the function.
     pub(crate) fn name(&self) -> String {
-        Python::attach(|py| {
+        let name = attached(|py| {
             let own = self.function.bind(py);
             let name =
                 own.getattr("__qualname__").or_else(|_| own.get_type().getattr("__qualname__"));
-            name.map_or_else(|_| "callable".to_owned(), |name| name.to_string())
-        })
+            name.ok().map(|name| name.to_string())
+        });
+        name.flatten().unwrap_or_else(|| "callable".to_owned())
     }
 
     /// The values at points; NaN where the function raises or has raised.
@@ -42,7 +44,7 @@ impl<const D: usize> Function<D> {
             return values.fill(f64::NAN);
         }
         let before = call::deeper();
-        let asked = Python::attach(|py| {
+        let asked = attached(|py| {
             // A search over a function may take long.
             py.check_signals()?;
             if call::depth() > DEEPEST {
@@ -83,9 +85,11 @@ impl<const D: usize> Function<D> {
             }
         });
         call::set_depth(before);
-        if let Err(error) = asked {
+        let ended =
+            || Err(PyRuntimeError::new_err("Python ends: functions are called no more"));
+        if let Err(error) = asked.unwrap_or_else(ended) {
             values.fill(f64::NAN);
-            Python::attach(|py| call::fail(py, error));
+            call::fail(error);
         }
     }
 }

@@ -11,6 +11,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use crate::call::detached;
+use crate::ending::attached;
 use crate::interrupt::A_WHILE;
 
 /// How long a thread sleeps that waits for the value.
@@ -58,7 +59,7 @@ impl<T: Send> Guarded<T> {
             }
             if looked.elapsed() > A_WHILE {
                 looked = Instant::now();
-                Python::attach(|py| py.check_signals())?;
+                attached(|py| py.check_signals()).unwrap_or(Ok(()))?;
             }
         }
     }

@@ -12,6 +12,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{misshapen, numbers};
+use crate::ending::detach;
 use crate::error::OrRaise;
 
 /// A simulated device in hands that go along paths in the world: rows of time [s] and position [m], one such array for
@@ -38,7 +39,7 @@ pub(crate) fn simulated<const D: usize>(
             return Err(PyValueError::new_err(problem));
         }
         None => {
-            let way = py.detach(|| HandWay::tour(scene, duration, points)).or_raise(py)?;
+            let way = detach(py, || HandWay::tour(scene, duration, points)).or_raise(py)?;
             let turns = tool.is_some().then(|| swing::<D>(duration)).transpose();
             (way.paths().or_raise(py)?, turns.or_raise(py)?)
         }

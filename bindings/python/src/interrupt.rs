@@ -12,6 +12,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use crate::call::Call;
+use crate::ending::{attached, detach};
 use crate::pool::Pool;
 
 /// How long work goes on before Python is asked whether it is to stop.
@@ -25,7 +26,7 @@ pub(crate) fn interruptible<T: Send>(
     work: impl FnOnce(&AtomicBool) -> T + Send,
 ) -> PyResult<T> {
     let (stop, call) = (AtomicBool::new(false), Call::default());
-    let answer = py.detach(|| {
+    let answer = detach(py, || {
         let (done, answer) = mpsc::channel();
         std::thread::scope(|scope| {
             let (stop, own) = (&stop, call.clone());
@@ -60,7 +61,7 @@ pub(crate) fn abandonable<T: Send + 'static>(
     // Nobody may wait for the answer any more.
     let thread = move || done.send(own.run(work));
     std::thread::Builder::new().spawn(thread)?;
-    let answer = py.detach(move || awaited(answer));
+    let answer = detach(py, move || awaited(answer));
     // Functions are not called after that: Python may end.
     let answer = answer.inspect_err(|_| call.abandon())?;
     call.ended()?;
@@ -72,7 +73,9 @@ fn awaited<T>(answer: Receiver<T>) -> PyResult<T> {
     loop {
         match answer.recv_timeout(A_WHILE) {
             Ok(answer) => return Ok(answer),
-            Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
+            Err(RecvTimeoutError::Timeout) => {
+                attached(|py| py.check_signals()).unwrap_or(Ok(()))?
+            }
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(PyRuntimeError::new_err("the work ended without an answer"));
             }

@@ -11,6 +11,7 @@ mod batch;
 mod call;
 mod chain;
 mod devices;
+mod ending;
 mod error;
 mod evaluate;
 mod function;
@@ -83,6 +84,7 @@ mod _palpate {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        super::ending::register(module)?;
         module.add("STOPS", read(module.py(), &STOPS)?)
     }
 }

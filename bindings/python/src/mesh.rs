@@ -18,6 +18,7 @@ use pyo3::prelude::*;
 
 use crate::answers::{self, Fields};
 use crate::arrays::{misshapen, numbers, row, table};
+use crate::ending::detach;
 use crate::error::OrRaise;
 use crate::grid::{along_the_first, named};
 use crate::interrupt::{abandonable, interruptible, unless_asked};
@@ -106,7 +107,7 @@ impl PyMesh {
     #[staticmethod]
     #[pyo3(signature = (file, *, scale = 1.0))]
     fn load(py: Python<'_>, file: PathBuf, scale: f64) -> PyResult<Self> {
-        let mesh = py.detach(|| read_file(&file)).or_raise(py)?;
+        let mesh = detach(py, || read_file(&file)).or_raise(py)?;
         let mesh = if scale == 1.0 { mesh } else { mesh.scaled(scale).or_raise(py)? };
         Ok(Self(mesh.into()))
     }
@@ -177,7 +178,7 @@ impl PyMesh {
             PyValueError::new_err("the name of a mesh must end in .obj, .stl, .ply or .glb")
         })?;
         let mut bytes = Vec::new();
-        py.detach(|| mesh.write(format, &mut bytes))?;
+        detach(py, || mesh.write(format, &mut bytes))?;
         replace(py, &file, &bytes)
     }
 
@@ -225,7 +226,7 @@ impl PyMesh {
     /// True
     #[getter]
     fn is_watertight(&self, py: Python<'_>) -> bool {
-        of_either!(&self.0, mesh => py.detach(|| mesh.report()).is_watertight())
+        of_either!(&self.0, mesh => detach(py, || mesh.report()).is_watertight())
     }
 
     /// What the mesh is: counts of what is wrong with it, its surface and what it encloses.
@@ -235,7 +236,7 @@ impl PyMesh {
     /// >>> report.boundary, round(report.enclosed, 6)
     /// (0, 1.0)
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        of_either!(&self.0, mesh => report(py, &py.detach(|| mesh.report())))
+        of_either!(&self.0, mesh => report(py, &detach(py, || mesh.report())))
     }
 
     /// The solid that the mesh bounds, as a shape: the distance to the nearest face, negative inside.
@@ -298,7 +299,7 @@ impl PyMesh {
 
     fn __repr__(&self, py: Python<'_>) -> String {
         of_either!(&self.0, mesh => {
-            format!("<palpate.Mesh: {}>", py.detach(|| mesh.report()))
+            format!("<palpate.Mesh: {}>", detach(py, || mesh.report()))
         })
     }
 

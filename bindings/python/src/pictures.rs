@@ -15,6 +15,7 @@ use pyo3::types::PyBytes;
 
 use crate::arrays::row;
 use crate::call::detached;
+use crate::ending::detach;
 use crate::error::OrRaise;
 use crate::interrupt::interruptible;
 use crate::mesh::replace;
@@ -62,7 +63,7 @@ impl PyFigure {
     /// True
     #[pyo3(signature = (*, width = 1200))]
     fn to_png<'py>(&self, py: Python<'py>, width: u32) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = py.detach(|| self.0.to_png(width)).or_raise(py)?;
+        let bytes = detach(py, || self.0.to_png(width)).or_raise(py)?;
         Ok(PyBytes::new(py, &bytes))
     }
 

@@ -5,8 +5,10 @@
 
 use pyo3::prelude::*;
 
+use crate::ending::detach;
+
 /// Runs a command line, the program's name first, and returns the exit status.
 #[pyfunction]
 pub(crate) fn main(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> u8 {
-    py.detach(|| palpate_cli::run(arguments))
+    detach(py, || palpate_cli::run(arguments))
 }

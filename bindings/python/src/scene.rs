@@ -3,11 +3,13 @@
 
 //! The class `Scene`: bodies with names, as in scene files.
 
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use palpate::field::Pose;
 use palpate::scene::{
-    AnyScene, AskError, BuiltScene, Dimension, Question, Scene, SceneBody, Versioned,
+    AnyScene, AskError, BuiltScene, Dimension, LARGEST_FILE, Question, Scene, SceneBody,
+    SceneCause, SceneError, Versioned,
 };
 use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -16,6 +18,7 @@ use pyo3::types::{PyDict, PyTuple};
 use crate::answers::{Fields, read};
 use crate::arrays::row;
 use crate::call::detached_in;
+use crate::ending::detach;
 use crate::error::OrRaise;
 use crate::interrupt::abandonable;
 use crate::mesh::replace;
@@ -170,9 +173,11 @@ impl PyScene {
         Self::of(py, scene, None)
     }
 
-    /// Reads a scene file. Files that it names are read again where the scene is unpickled.
+    /// Reads a scene file, of at most `largest_file` bytes, 256 MiB if left out. Files that it names are read again
+    /// where the scene is unpickled.
     ///
-    /// Raises `MissingFileError` if there is no such file, `SceneError` with the place in the file if it is no scene.
+    /// Raises `MissingFileError` if there is no such file, `FileError` if it is too large, `SceneError` with the place in
+    /// the file if it is no scene.
     ///
     /// >>> import palpate as pp, tempfile, os
     /// >>> file = os.path.join(tempfile.mkdtemp(), "scene.json")
@@ -180,8 +185,11 @@ impl PyScene {
     /// >>> pp.Scene.load(file).names
     /// ('body',)
     #[staticmethod]
-    fn load(py: Python<'_>, file: PathBuf) -> PyResult<Self> {
-        let scene = py.detach(|| Scene::from_file(&file)).or_raise(py)?;
+    #[pyo3(signature = (file, *, largest_file = None))]
+    fn load(py: Python<'_>, file: PathBuf, largest_file: Option<u64>) -> PyResult<Self> {
+        let most = largest_file.unwrap_or(LARGEST_FILE);
+        let read = detach(py, || Scene::from_file_within(&file, most));
+        let scene = read.map_err(with_option).or_raise(py)?;
         let folder = std::path::absolute(&file)?.parent().map(PathBuf::from);
         Self::of(py, scene, folder)
     }
@@ -383,4 +391,16 @@ pub(crate) fn matrices<'py, const D: usize>(
         numbers.push(1.0);
     }
     row(py, numbers).call_method1("reshape", (-1, D + 1, D + 1))
+}
+
+/// An error of a file that is too large, with the option that raises the limit.
+fn with_option(error: SceneError) -> SceneError {
+    let mut first = error.first().clone();
+    match first.cause.as_deref() {
+        Some(SceneCause::File(ErrorKind::FileTooLarge)) => {
+            first.problem.push_str("; largest_file raises that");
+            first.into()
+        }
+        _ => error,
+    }
 }

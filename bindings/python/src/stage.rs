@@ -14,6 +14,7 @@ use palpate::servo_loop::{
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
+use crate::ending::detach;
 use crate::error::OrRaise;
 
 /// Moves bodies to where they are at a time [s], by their numbers.
@@ -186,7 +187,7 @@ impl Staged {
         if self.is_copy() {
             return;
         }
-        py.detach(|| {
+        detach(py, || {
             let mut stage = self.locked();
             while matches!(&*stage, Stage::Ending) {
                 stage = self.has_ended.wait(stage).unwrap_or_else(PoisonError::into_inner);

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import multiprocessing
 import random
+import subprocess
 import sys
 import threading
 import time
@@ -45,6 +46,61 @@ def test_processes_after_threads(way: str) -> None:
 def test_a_long_call_is_stopped(name: str) -> None:
     # It stops long before its end; `benchmarks/overheads.py` measures how soon.
     assert delay(name) < 30
+
+
+AT_EXIT = """
+import threading, time
+import numpy as np
+import palpate as pp
+
+ball = pp.ball(0.1)
+function = pp.from_function(lambda points: np.linalg.norm(points, axis=1) - 0.1, dimension=3, lipschitz=1)
+points = np.random.default_rng(1).random((300_000, 3))
+begun = threading.Barrier(5)
+
+def work():
+    begun.wait()
+    while True:
+        {call}
+
+for _ in range(4):
+    threading.Thread(target=work, daemon=True).start()
+begun.wait()
+time.sleep(0.2)
+"""
+
+CALLS_AT_EXIT = {
+    "the core": "ball.distance(points)",
+    "threads of the core": "ball.distance(points, threads=2)",
+    "a function": "function.distance(points)",
+    "threads that call a function": "function.distance(points, threads=2)",
+    "one point after another": "ball.distance([0, 0, 1])",
+    "a search": "pp.separation(ball, pp.ball(0.1).translated([1, 0, 0]))",
+    "a search over a function": "pp.separation(function, pp.ball(0.1).translated([1, 0, 0]))",
+}
+
+
+# The interpreter unwound the threads, which aborted the process or read memory that was freed.
+@pytest.mark.parametrize("call", CALLS_AT_EXIT.values(), ids=CALLS_AT_EXIT.keys())
+def test_daemon_threads_do_not_abort_the_end(call: str) -> None:
+    program = [sys.executable, "-c", AT_EXIT.format(call=call)]
+    for _ in range(3):
+        done = subprocess.run(program, capture_output=True, text=True, timeout=60, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+# What is registered before palpate is called after its own end.
+def test_calls_at_the_very_end_are_answered() -> None:
+    program = """
+import atexit
+@atexit.register
+def last():
+    function = pp.from_function(lambda points: points[:, 0] - 1, dimension=3, lipschitz=1)
+    print(pp.ball(0.5).distance([1, 0, 0]), function.distance([3, 0, 0]))
+import palpate as pp
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "0.5 2.0\n", "")
 
 
 def test_a_second_thread_goes_on() -> None:

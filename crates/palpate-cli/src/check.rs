@@ -16,14 +16,15 @@ use palpate::scene::{
 use serde::Serialize;
 
 use crate::answers::Bounds;
-use crate::input::{Bakes, bytes, folder, longest_edge, other_than_scene};
+use crate::arguments::Reading;
+use crate::input::{Bakes, folder, longest_edge, other_than_scene};
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, counted, shown};
 use crate::unfelt;
 use crate::units::hint;
 
 pub(crate) fn run(options: &CheckOptions) -> Result<Outcome, Failure> {
-    let bytes = bytes(&options.scene)?;
+    let bytes = options.reading.bytes(&options.scene)?;
     let mut out = output::answer();
     let name = options.scene.display().to_string();
     let bakes = Bakes::new(Some(folder(&options.scene)));
@@ -534,4 +535,6 @@ pub(crate) struct CheckOptions {
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }

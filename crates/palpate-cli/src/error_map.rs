@@ -13,6 +13,7 @@ use palpate::query::BallWorkspace;
 use palpate::scene::BuiltScene;
 use rayon::prelude::*;
 
+use crate::arguments::Reading;
 use crate::input::{self, longest_edge};
 use crate::interrupt;
 use crate::outcome::Failure;
@@ -156,9 +157,10 @@ where
     Dimensions: Drawable<D>,
 {
     /// The field of the scene in `path`, to be compared with that of `scene`.
-    fn read(path: &Path, scene: &Path) -> Result<Self, Failure> {
+    fn read(path: &Path, scene: &Path, reading: Reading) -> Result<Self, Failure> {
         let names = [scene, path].map(title);
-        let scene = Dimensions::scene(input::scene(Some(path))?.scene).ok_or_else(|| {
+        let read = input::scene(Some(path), reading)?.scene;
+        let scene = Dimensions::scene(read).ok_or_else(|| {
             let problem = format!("its fields are not in {D}D, as those it is compared with");
             Failure::file(path, problem)
         })?;
@@ -219,7 +221,7 @@ where
                 wrong("--map error compares with --against or with --gradient, not with both")
             }
             (PlotMap::Error, Some(path), None) => {
-                Ok(Self::Other(Other::read(path, &options.scene)?))
+                Ok(Self::Other(Other::read(path, &options.scene, options.reading)?))
             }
             (PlotMap::Error | PlotMap::Gradient, None, Some(name)) => {
                 let method = method::<D>(name, options)?;

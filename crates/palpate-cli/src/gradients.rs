@@ -17,6 +17,7 @@ use palpate::scene::text::joined;
 use palpate::scene::{AnyScene, BuiltScene};
 use serde::Serialize;
 
+use crate::arguments::Reading;
 use crate::arguments::numbers::length;
 use crate::error_map::{Gradient, sampler};
 use crate::input::{self, longest_edge};
@@ -32,10 +33,10 @@ const COLUMNS: usize = 2;
 const CELLS: usize = 160;
 
 pub(crate) fn run(options: &GradientsOptions) -> Result<Outcome, Failure> {
-    let mut files = Files::reading([options.scene.as_path()]);
+    let mut files = Files::reading([options.scene.as_path()], options.reading);
     let picture = options.plot.as_deref().map(|path| Picture::new(&mut files, path));
     let picture = picture.transpose()?;
-    match &input::scene(Some(&options.scene))?.scene {
+    match &input::scene(Some(&options.scene), options.reading)?.scene {
         AnyScene::Planar(scene) => compare(options, scene, picture.as_ref()),
         AnyScene::Spatial(scene) => compare(options, scene, picture.as_ref()),
     }
@@ -315,4 +316,6 @@ pub(crate) struct GradientsOptions {
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }

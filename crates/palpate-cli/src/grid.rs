@@ -17,6 +17,7 @@ use palpate::scene::text::rounded;
 use palpate::scene::{AnyScene, BuiltScene};
 use serde::Serialize;
 
+use crate::arguments::Reading;
 use crate::arguments::numbers::{count, length};
 use crate::input;
 use crate::interrupt::{self, Interrupt, Progress};
@@ -25,7 +26,7 @@ use crate::output::{self, Files, shown};
 
 /// Bakes the scene, or one of its bodies; the answer is no if the deviation is not known.
 pub(crate) fn run(options: &GridOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
-    let named = input::scene(Some(&options.scene))?;
+    let named = input::scene(Some(&options.scene), options.reading)?;
     match &named.scene {
         AnyScene::Planar(scene) => bake(options, scene, interrupt),
         AnyScene::Spatial(scene) => bake(options, scene, interrupt),
@@ -38,7 +39,7 @@ fn bake<const D: usize>(
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
     let shape = input::body_or_whole(scene, options.body.as_deref())?;
-    let mut files = Files::reading([options.scene.as_path()]);
+    let mut files = Files::reading([options.scene.as_path()], options.reading);
     let destination = files.output_as(&options.output, "a grid", "grid")?;
     let pool = interrupt::pool(options.threads)?;
     interrupt.heed();
@@ -207,6 +208,8 @@ pub(crate) struct GridOptions {
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }
 
 /// A kernel by its name.

@@ -3,8 +3,6 @@
 
 //! Files that are read.
 
-use std::fs::File;
-use std::io::Read;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -18,6 +16,7 @@ use palpate::scene::{
 };
 use palpate::sim::{HandPath, Interpolation, SimulationError};
 
+use crate::arguments::Reading;
 use crate::interrupt::Progress;
 use crate::kind::Kind;
 use crate::outcome::Failure;
@@ -37,33 +36,43 @@ pub(crate) struct Named {
 }
 
 /// Reads and builds the scene in `path`, or the built-in gallery.
-pub(crate) fn scene(path: Option<&Path>) -> Result<Named, Failure> {
-    moving(path, None)
+pub(crate) fn scene(path: Option<&Path>, reading: Reading) -> Result<Named, Failure> {
+    moving(path, None, reading)
+}
+
+/// The name and the text of the built-in gallery.
+pub(crate) fn gallery() -> (String, String) {
+    ("the built-in gallery".to_owned(), GALLERY.to_owned())
 }
 
 /// The name and the text of the scene in `path`, or of the built-in gallery, which is not checked
 /// here.
-pub(crate) fn scene_text(path: Option<&Path>) -> Result<(String, String), Failure> {
-    let Some(path) = path else {
-        return Ok(("the built-in gallery".to_owned(), GALLERY.to_owned()));
-    };
-    let bytes = self::bytes(path)?;
+pub(crate) fn scene_text(
+    path: Option<&Path>,
+    reading: Reading,
+) -> Result<(String, String), Failure> {
+    let Some(path) = path else { return Ok(gallery()) };
+    let bytes = reading.bytes(path)?;
     let text = utf8(&bytes).map_err(|error| Failure::file(path, error))?;
     Ok((path.display().to_string(), text.to_owned()))
 }
 
 /// As [`scene`], with the motions of a file in place of its own.
-pub(crate) fn moving(path: Option<&Path>, motions: Option<&Path>) -> Result<Named, Failure> {
+pub(crate) fn moving(
+    path: Option<&Path>,
+    motions: Option<&Path>,
+    reading: Reading,
+) -> Result<Named, Failure> {
     let (name, bytes) = match path {
         None => ("the built-in gallery".to_owned(), GALLERY.as_bytes().to_owned()),
-        Some(path) => (path.display().to_string(), self::bytes(path)?),
+        Some(path) => (path.display().to_string(), reading.bytes(path)?),
     };
     let no_scene =
         |error| Failure::input(format!("{name}: {}", no_scene(path, &bytes, &error)));
     let bakes = Bakes::new(path.map(folder));
     let mut scene = Scene::from_bytes_in(&bytes, bakes.resources.clone()).map_err(no_scene)?;
     if let Some(path) = motions {
-        let moved = scene.with_motions_of(&self::bytes(path)?);
+        let moved = scene.with_motions_of(&reading.bytes(path)?);
         scene = moved.map_err(|error| Failure::file(path, error))?;
     }
     let scene = scene.build().map_err(no_scene)?;
@@ -160,27 +169,6 @@ pub(crate) fn other_than_scene(path: &Path, bytes: &[u8]) -> Option<String> {
 
 /// A scene to begin with.
 const SMALL: &str = r#"{ "palpate": 1, "dimension": 3, "bodies": [ { "name": "bead", "shape": { "ball": { "radius": 0.02 } } } ] }"#;
-
-/// The longest file that is read whole [B]: what has no end, such as a device, would fill the memory.
-const LONGEST: u64 = 1 << 28;
-
-/// The bytes of a file.
-pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
-    if path.is_dir() {
-        return Err(Failure::file(path, "is a folder; name a file in it"));
-    }
-    let mut bytes = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
-        .map_err(|error| Failure::file(path, error))?;
-    if bytes.len() as u64 > LONGEST {
-        return Err(Failure::file(
-            path,
-            format!("is longer than {LONGEST} bytes, the most that are read"),
-        ));
-    }
-    Ok(bytes)
-}
 
 /// The numbers of the bodies with these names, each once.
 pub(crate) fn bodies(asked: &[String], names: &[&str]) -> Result<Vec<usize>, Failure> {
@@ -288,8 +276,11 @@ type Samples = (Vec<f64>, Vec<Vector<f64, 3>>);
 
 /// Reads a path for each contact point of a scene of `D` dimensions from the columns `time_s,x_m,y_m[,z_m]` and, optionally,
 /// `point`, the number of the row's contact point.
-pub(crate) fn read<const D: usize>(path: &Path) -> Result<Vec<HandPath>, Failure> {
-    let mut table = Table::open(path)?;
+pub(crate) fn read<const D: usize>(
+    path: &Path,
+    reading: Reading,
+) -> Result<Vec<HandPath>, Failure> {
+    let mut table = Table::open(path, reading)?;
     let columns = coordinates::<D>(&table, &format!("a hand path in {D}D"), &["time_s"])?;
     let point = table.column("point");
     let mut paths: Vec<Samples> = Vec::new();

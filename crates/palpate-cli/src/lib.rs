@@ -52,7 +52,7 @@ use outcome::{Failure, Outcome};
 pub use interrupt::Interrupt;
 
 /// Runs a command line, the program's name first, and returns the exit status: 0 if the answer
-/// is yes, 1 if it is no, 2 if the input cannot be used.
+/// is yes, 1 if it is no, 2 if the input cannot be used, 141 if the reader of the answer left.
 ///
 /// # Examples
 ///
@@ -90,7 +90,7 @@ pub fn run_until(
     };
     match status {
         Ok(status) => status,
-        Err(failure) if failure.is_closed_pipe() => Outcome::Yes.status(),
+        Err(failure) if failure.is_closed_pipe() => Failure::NO_READER,
         Err(failure) => {
             output::complain(&failure);
             Failure::STATUS

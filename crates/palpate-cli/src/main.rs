@@ -5,11 +5,15 @@
 
 use std::io;
 use std::process::ExitCode;
+#[cfg(unix)]
+use std::sync::Arc;
 
 use mimalloc::MiMalloc;
 use palpate_cli::{Interrupt, run_until};
 #[cfg(target_os = "linux")]
 use signal_hook::consts::SIGHUP;
+#[cfg(unix)]
+use signal_hook::consts::SIGXFSZ;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 #[cfg(unix)]
@@ -46,6 +50,9 @@ fn listen(interrupt: &Interrupt) -> io::Result<()> {
     }
     #[cfg(unix)]
     stop_forces(interrupt)?;
+    // A file that becomes too large for the user's limit is then an error, which names it.
+    #[cfg(unix)]
+    flag::register(SIGXFSZ, Arc::default())?;
     Ok(())
 }
 

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use clap::Args;
 use palpate::scene::{Answer, AnyScene, BuiltScene, MassAnswer, MassQuestion, Question};
 
+use crate::arguments::Reading;
 use crate::arguments::numbers::{count, positive, within};
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
@@ -16,7 +17,7 @@ use crate::{ask, input, output};
 /// Computes the mass of each body; the answer is no if an error is above the tolerance, or a body
 /// has none.
 pub(crate) fn run(options: &MassOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
-    let named = input::scene(Some(&options.scene))?;
+    let named = input::scene(Some(&options.scene), options.reading)?;
     match &named.scene {
         AnyScene::Planar(scene) => report(options, scene, interrupt),
         AnyScene::Spatial(scene) => report(options, scene, interrupt),
@@ -84,4 +85,6 @@ pub(crate) struct MassOptions {
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }

@@ -18,6 +18,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::answers::Bounds;
+use crate::arguments::Reading;
 use crate::arguments::numbers::length;
 use crate::input::longest_edge;
 use crate::interrupt::Interrupt;
@@ -302,4 +303,6 @@ pub(crate) struct MeshOptions {
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }

@@ -43,6 +43,9 @@ impl Failure {
     /// The exit status.
     pub(crate) const STATUS: u8 = 2;
 
+    /// The exit status where the reader of the output left: as if SIGPIPE had ended the program.
+    pub(crate) const NO_READER: u8 = 141;
+
     /// What was wrong with the input.
     pub(crate) fn input(problem: impl fmt::Display) -> Self {
         Self::Input(problem.to_string())
@@ -50,9 +53,16 @@ impl Failure {
 
     /// All failures of several results in one; `Ok` if there are none.
     pub(crate) fn any(results: impl IntoIterator<Item = Result<(), Self>>) -> Result<(), Self> {
-        let failures = results.into_iter().filter_map(Result::err);
-        let problems: Vec<_> = failures.map(|failure| failure.to_string()).collect();
-        if problems.is_empty() { Ok(()) } else { Err(Self::Input(problems.join("; "))) }
+        let mut failures: Vec<_> = results.into_iter().filter_map(Result::err).collect();
+        match failures.pop() {
+            None => Ok(()),
+            // Kept as it is: the reader of an output may have left.
+            Some(failure) if failures.is_empty() => Err(failure),
+            Some(last) => {
+                let problems = failures.iter().chain([&last]).map(ToString::to_string);
+                Err(Self::Input(problems.collect::<Vec<_>>().join("; ")))
+            }
+        }
     }
 
     /// `path` could not be read or written.

@@ -12,6 +12,7 @@ use palpate::plot::{Figure, Isolines, Measured, PlaneView, PlotError, Sampling, 
 use palpate::scene::{AnyScene, BuiltScene, WrittenView};
 use serde::Serialize;
 
+use crate::arguments::Reading;
 use crate::arguments::numbers::{coordinate, count, length, zero_or_more};
 use crate::contact::{ContactQuestion, Touched};
 use crate::error_map::Compared;
@@ -23,11 +24,11 @@ use crate::{emptiness, input, plane, views};
 
 pub(crate) fn run(options: &PlotOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let inputs = [Some(options.scene.as_path()), options.against.as_deref()];
-    let mut files = Files::reading(inputs.into_iter().flatten());
+    let mut files = Files::reading(inputs.into_iter().flatten(), options.reading);
     let picture = Picture::new(&mut files, &output_path(options))?;
     picture.check_width(options.width)?;
     options.question.refuse_unless(options.contacts)?;
-    let named = input::scene(Some(&options.scene))?;
+    let named = input::scene(Some(&options.scene), options.reading)?;
     match &named.scene {
         AnyScene::Planar(scene) => {
             let in_space = [
@@ -428,6 +429,8 @@ pub(crate) struct PlotOptions {
     /// Print what was drawn as JSON.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }
 
 /// What the colours of a picture of a field show.

@@ -3,16 +3,24 @@
 
 //! Profiles of devices as files.
 
+use std::path::Path;
+
 use palpate_device::{Buttons, DeviceProfile, GripperProfile, TurningProfile};
 use serde::{Deserialize, Serialize};
 
 use crate::encoding::utf8;
+use crate::file::read_file;
 use crate::json::{self, Document, Source};
 use crate::names::unknown as unknown_name;
-use crate::problem::{Problem, Problems, SceneError, at_least, positive, version};
+use crate::problem::{
+    Problem, Problems, SceneError, SceneProblem, at_least, positive, version,
+};
 
 /// The version of the format.
 const VERSION: u64 = 1;
+
+/// The largest file of a device [bytes]: a hundred times as much as any has.
+const LARGEST_FILE: u64 = 1 << 20;
 
 /// Stands in for a number that is missing, so that the rest of the file can be checked. No device has
 /// it, and problems with it are not told, as the missing key is.
@@ -115,6 +123,19 @@ pub fn device_from_json(bytes: &[u8]) -> Result<DeviceProfile, SceneError> {
     let source = Source::of(text);
     let written: WrittenDevice = Document::parse(&source)?.read(check)?;
     Ok(profile(written))
+}
+
+/// Reads the profile of the file at `path`, as [`device_from_json`].
+///
+/// # Errors
+///
+/// As `device_from_json`; if the file cannot be read, or has more than 1 MiB, an error without place
+/// that names it.
+pub fn device_from_file(path: impl AsRef<Path>) -> Result<DeviceProfile, SceneError> {
+    let path = path.as_ref();
+    let bytes =
+        read_file(path, LARGEST_FILE).map_err(|error| SceneProblem::of_file(path, &error))?;
+    device_from_json(&bytes)
 }
 
 /// The text of a file from which [`device_from_json`] reads the same profile.

@@ -13,6 +13,12 @@ use crate::emptiness::is_empty;
 /// Evaluations for each pair: most proofs take hundreds.
 const BUDGET: u32 = 4000;
 
+/// Evaluations for all pairs, about a second: of thousands of bodies in one place each lies in many.
+const BUDGET_OF_ALL: u64 = 2_000_000;
+
+/// The most pairs whose boxes are compared, about a tenth of a second: those of 4000 bodies.
+const MOST_PAIRS: usize = 16_000_000;
+
 /// The smallest part outside that counts as a point, as a share of the inner body's size.
 const TOLERANCE: f64 = 1e-9;
 
@@ -30,7 +36,7 @@ impl<const D: usize> BuiltScene<D> {
     /// The bodies that cannot be felt, because they lie wholly within another: a contact stays on the
     /// surface of all bodies together. Each entry names the first body around it.
     ///
-    /// What is not proven is not told. Bodies that move are left out, a magnet, which pulls from
+    /// What is not proven is not told, and of many bodies only the first are asked about. Bodies that move are left out, a magnet, which pulls from
     /// afar, and what lies in a body that a hand punctures.
     #[must_use]
     pub fn hidden(&self) -> Vec<Hidden> {
@@ -38,46 +44,79 @@ impl<const D: usize> BuiltScene<D> {
         self.moving().for_each(|body| rests[body] = false);
         let resting = |number: &usize| rests[*number];
         let all = || (0..self.bodies.len()).filter(resting);
-        let around = |body: usize| {
+        let mut proofs = Proofs::default();
+        let mut found = Vec::new();
+        for body in all() {
             let inner = &self.bodies[body];
             let mut others = all().filter(|other| *other != body);
-            let within = others.find(|other| is_hidden_in(inner, &self.bodies[*other]))?;
-            Some(Hidden { body, within })
+            let within = others.find(|other| proofs.is_hidden_in(inner, &self.bodies[*other]));
+            found.extend(within.map(|within| Hidden { body, within }));
+            if proofs.are_spent() {
+                break;
+            }
+        }
+        found
+    }
+}
+
+/// What was asked about the pairs of a scene.
+#[derive(Default)]
+struct Proofs {
+    /// Pairs whose boxes were compared.
+    pairs: usize,
+    evaluations: u64,
+}
+
+impl Proofs {
+    fn are_spent(&self) -> bool {
+        self.pairs >= MOST_PAIRS || self.evaluations >= BUDGET_OF_ALL
+    }
+
+    fn is_hidden_in<const D: usize>(
+        &mut self,
+        inner: &BuiltBody<D>,
+        outer: &BuiltBody<D>,
+    ) -> bool {
+        if self.are_spent() {
+            return false;
+        }
+        self.pairs += 1;
+        let mut layers = outer.material.layers.iter();
+        let is_punctured = outer.material.pop_through.is_some()
+            || layers.any(|layer| layer.pop_through.is_some());
+        let pulls = inner.material.magnet.is_some();
+        // A surface that a texture moves is not that of the shape.
+        let is_moved = [inner, outer].iter().any(|body| {
+            let texture = body.material.texture.as_ref();
+            texture.is_some_and(|texture| texture.kind == TextureKind::Displacement)
+        });
+        !is_punctured && !pulls && !is_moved && self.is_within(&inner.shape, &outer.shape)
+    }
+
+    /// Whether it is proven that a shape has points, and all of them lie within another.
+    fn is_within<const D: usize>(&mut self, inner: &Shape<D>, outer: &Shape<D>) -> bool {
+        let promise = inner.promise();
+        // A curve or a sheet has no inside, whose points are searched for.
+        let Some(bounds) = promise.bounds.filter(|_| promise.has_interior) else {
+            return false;
         };
-        all().filter_map(around).collect()
+        let apart = |other: Aabb<D>| {
+            (0..D)
+                .any(|i| bounds.aabb.max[i] < other.min[i] || other.max[i] < bounds.aabb.min[i])
+        };
+        if outer.promise().bounds.is_some_and(|bounds| apart(bounds.aabb)) {
+            return false;
+        }
+        let Ok(outside) = Shape::difference(inner.clone(), [outer.clone()]) else {
+            return false;
+        };
+        let size = bounds.aabb.half_extents().norm();
+        let limits = Limits::new(TOLERANCE * size).with_budget(BUDGET);
+        let found = any_point(&outside, &limits, &mut PairWorkspace::new());
+        let Ok(found) = found else { return false };
+        self.evaluations += u64::from(found.evaluations);
+        found.is_hit() == Some(false) && is_empty(inner) == Some(false)
     }
-}
-
-fn is_hidden_in<const D: usize>(inner: &BuiltBody<D>, outer: &BuiltBody<D>) -> bool {
-    let mut layers = outer.material.layers.iter();
-    let is_punctured =
-        outer.material.pop_through.is_some() || layers.any(|layer| layer.pop_through.is_some());
-    let pulls = inner.material.magnet.is_some();
-    // A surface that a texture moves is not that of the shape.
-    let is_moved = [inner, outer].iter().any(|body| {
-        let texture = body.material.texture.as_ref();
-        texture.is_some_and(|texture| texture.kind == TextureKind::Displacement)
-    });
-    !is_punctured && !pulls && !is_moved && is_within(&inner.shape, &outer.shape)
-}
-
-/// Whether it is proven that a shape has points, and all of them lie within another.
-fn is_within<const D: usize>(inner: &Shape<D>, outer: &Shape<D>) -> bool {
-    let promise = inner.promise();
-    // A curve or a sheet has no inside, whose points are searched for.
-    let Some(bounds) = promise.bounds.filter(|_| promise.has_interior) else { return false };
-    let apart = |other: Aabb<D>| {
-        (0..D).any(|i| bounds.aabb.max[i] < other.min[i] || other.max[i] < bounds.aabb.min[i])
-    };
-    if outer.promise().bounds.is_some_and(|bounds| apart(bounds.aabb)) {
-        return false;
-    }
-    let Ok(outside) = Shape::difference(inner.clone(), [outer.clone()]) else { return false };
-    let size = bounds.aabb.half_extents().norm();
-    let limits = Limits::new(TOLERANCE * size).with_budget(BUDGET);
-    let found = any_point(&outside, &limits, &mut PairWorkspace::new());
-    let has_none = found.is_ok_and(|found| found.is_hit() == Some(false));
-    has_none && is_empty(inner) == Some(false)
 }
 
 #[cfg(test)]
@@ -121,6 +160,22 @@ mod tests {
         let rough = r#", "material": { "texture": { "kind": "displacement", "amplitude": 0.001,
             "wavelength": 0.02 } }"#;
         assert_eq!(hidden(0.012, 0.006, "", rough), []);
+    }
+
+    /// Of balls in one place each was once asked about with each.
+    #[test]
+    fn many_bodies_in_one_place_take_a_bounded_time() {
+        let body = |i| {
+            let radius = 0.01 + 1e-6 * f64::from(i);
+            format!(r#"{{ "name": "{i}", "shape": {{ "ball": {{ "radius": {radius} }} }} }}"#)
+        };
+        let bodies: Vec<_> = (0..3000).rev().map(body).collect();
+        let bodies = bodies.join(",");
+        let text = format!(r#"{{ "palpate": 1, "dimension": 3, "bodies": [ {bodies} ] }}"#);
+        let scene = Scene::from_bytes(text.as_bytes()).unwrap().build().unwrap();
+        let AnyScene::Spatial(scene) = scene else { panic!() };
+        let found = scene.hidden();
+        assert!(found.contains(&Hidden { body: 1, within: 0 }) && found.len() < 2999);
     }
 
     #[test]

@@ -47,6 +47,7 @@ mod catalogue;
 mod device_file;
 mod emptiness;
 mod encoding;
+mod file;
 mod grids;
 mod guide;
 mod hidden;
@@ -78,9 +79,10 @@ pub use build::{
     AnyScene, BuiltBody, BuiltMotion, BuiltScene, BuiltTool, MotionJump, MotionSpeed,
 };
 pub use catalogue::described_primitive;
-pub use device_file::{device_from_json, device_to_json};
+pub use device_file::{device_from_file, device_from_json, device_to_json};
 pub use emptiness::is_empty;
 pub use encoding::{NotUtf8, utf8};
+pub use file::{LARGEST_FILE, read_file, too_large};
 pub use grids::{BakedBody, BakedGrid, MeshesBaked};
 pub use guide::{GuideCurve, GuideLine, GuidePlane, GuideSegment, GuideWell, WrittenGuide};
 pub use hidden::Hidden;

@@ -377,6 +377,8 @@ pub struct Resources {
     pub cache: Option<GridCache>,
     /// Who is told how a grid is made.
     pub progress: Option<BakeProgress>,
+    /// The most nodes with references followed, where that is fewer than the million of any scene.
+    pub most_nodes: Option<usize>,
 }
 
 impl Resources {
@@ -396,6 +398,23 @@ impl Resources {
     #[must_use]
     pub fn with_progress(self, progress: BakeProgress) -> Self {
         Self { progress: Some(progress), ..self }
+    }
+
+    /// The same with at most so many nodes, references followed: where a scene is edited, each edit
+    /// builds all of them.
+    ///
+    /// ```
+    /// use palpate_scene::{Resources, Scene};
+    ///
+    /// let text = r#"{ "palpate": 1, "dimension": 2, "bodies": [ { "name": "discs", "shape": { "union":
+    ///     [{ "ball": { "radius": 0.02 } }, { "ball": { "radius": 0.03 } }] } } ] }"#;
+    /// assert!(Scene::from_json_in(text, Resources::default().with_most_nodes(3)).is_ok());
+    /// let error = Scene::from_json_in(text, Resources::default().with_most_nodes(2)).unwrap_err();
+    /// assert!(error.to_string().contains("more than 2 nodes"));
+    /// ```
+    #[must_use]
+    pub fn with_most_nodes(self, most: usize) -> Self {
+        Self { most_nodes: Some(most), ..self }
     }
 
     /// The grid of a shape, kept or made.
@@ -431,16 +450,18 @@ impl From<&Path> for Resources {
 impl PartialEq for Resources {
     /// Who is told does not count.
     fn eq(&self, other: &Self) -> bool {
-        (&self.folder, &self.cache) == (&other.folder, &other.cache)
+        (&self.folder, &self.cache, self.most_nodes)
+            == (&other.folder, &other.cache, other.most_nodes)
     }
 }
 
 impl fmt::Debug for Resources {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { folder, cache, progress: _ } = self;
+        let Self { folder, cache, progress: _, most_nodes } = self;
         f.debug_struct("Resources")
             .field("folder", folder)
             .field("cache", cache)
+            .field("most_nodes", most_nodes)
             .finish_non_exhaustive()
     }
 }

@@ -4,6 +4,7 @@
 //! Problems of scenes.
 
 use std::fmt;
+use std::path::Path;
 
 use palpate_field::ShapeError;
 use serde::de::{self, Expected, Unexpected};
@@ -474,6 +475,19 @@ pub struct SceneProblem {
     pub excerpt: String,
     /// The error behind the problem, if another crate found it.
     pub cause: Option<Box<SceneCause>>,
+}
+
+impl SceneProblem {
+    /// That a file cannot be read.
+    pub(crate) fn of_file(path: &Path, error: &std::io::Error) -> Self {
+        // The words of `read_file` have no subject.
+        let it = if error.raw_os_error().is_none() { "it " } else { "" };
+        Self {
+            problem: format!("cannot read {}: {it}{error}", path.display()),
+            cause: Some(Box::new(SceneCause::File(error.kind()))),
+            ..Self::default()
+        }
+    }
 }
 
 /// The error behind a [`SceneProblem`].

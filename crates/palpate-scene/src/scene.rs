@@ -14,13 +14,14 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use crate::build::{self, AnyScene};
 use crate::encoding::utf8;
+use crate::file::{LARGEST_FILE, read_file};
 use crate::guide::WrittenGuide;
 use crate::json::{self, Document, Source};
 use crate::material::WrittenMaterial;
 use crate::mesh_file::Resources;
 use crate::motion::WrittenMotion;
 use crate::pose::WrittenPose;
-use crate::problem::{Problem, SceneCause, SceneError, SceneProblem};
+use crate::problem::{Problem, SceneError, SceneProblem};
 use crate::shape::WrittenShape;
 use crate::tool::WrittenTool;
 use crate::view::WrittenView;
@@ -223,15 +224,21 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// As `from_bytes`; if the file cannot be read, an error without place that
-    /// names it.
+    /// As `from_bytes`; if the file cannot be read, or has more bytes than [`LARGEST_FILE`], an error
+    /// without place that names it.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        Self::from_file_within(path, LARGEST_FILE)
+    }
+
+    /// As [`from_file`](Self::from_file), of a file that has at most `most` bytes.
+    ///
+    /// # Errors
+    ///
+    /// As `from_file`.
+    pub fn from_file_within(path: impl AsRef<Path>, most: u64) -> Result<Self, SceneError> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(|error| SceneProblem {
-            problem: format!("cannot read {}: {error}", path.display()),
-            cause: Some(Box::new(SceneCause::File(error.kind()))),
-            ..SceneProblem::default()
-        })?;
+        let bytes =
+            read_file(path, most).map_err(|error| SceneProblem::of_file(path, &error))?;
         Self::from_bytes_in(&bytes, path.parent().unwrap_or(Path::new("")))
     }
 

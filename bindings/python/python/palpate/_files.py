@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The palpate authors
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Files that are whole or not there."""
+"""Files that are whole or not there, and not larger than is read."""
 
 from __future__ import annotations
 
@@ -9,6 +9,19 @@ import secrets
 import shutil
 from pathlib import Path
 from typing import IO
+
+
+#: The largest file that is read whole [bytes].
+LARGEST = 1 << 28
+
+
+def read(file: Path) -> str:
+    """The text of a file that is not too large."""
+    with open(file, "rb") as opened:
+        content = opened.read(LARGEST + 1)
+    if len(content) > LARGEST:
+        raise ValueError(f"{file} is longer than {LARGEST} bytes, the most that are read")
+    return content.decode("utf-8")
 
 
 def replace(file: str | os.PathLike[str], content: bytes) -> None:

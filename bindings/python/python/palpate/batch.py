@@ -35,7 +35,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from palpate._files import claim, replace
+from palpate._files import claim, read, replace
 
 __all__ = ["Run", "distances", "overlaps", "separations"]
 
@@ -287,7 +287,7 @@ def _digest(job: dict[str, Any]) -> str:
 @lru_cache(maxsize=8)
 def _job(folder: str, digest: str) -> dict[str, Any]:
     """The job of a run, from its manifest: once in each worker."""
-    job = json.loads((Path(folder) / MANIFEST).read_text(encoding="utf-8"))["job"]
+    job = json.loads(read(Path(folder) / MANIFEST))["job"]
     if _digest(job) != digest:
         raise ValueError(f"{Path(folder) / MANIFEST} is not that of this run: was the folder replaced meanwhile?")
     return dict(job)
@@ -519,7 +519,7 @@ def _agreed(
         if claim(file, json.dumps({**wanted, "chunk": size}, indent=1).encode()):
             return size
     try:
-        there = json.loads(file.read_text(encoding="utf-8"))
+        there = json.loads(read(file))
         size = there["chunk"]
         if type(size) is not int or size < 1:
             raise ValueError(f"chunk is {size!r}")

@@ -5,6 +5,7 @@
 
 pub(crate) mod numbers;
 mod profile;
+mod reading;
 
 use clap::{Parser, Subcommand};
 
@@ -28,6 +29,7 @@ pub(crate) use crate::schema::SchemaOptions;
 pub(crate) use crate::shapes::ShapesOptions;
 pub(crate) use crate::sweep::SweepOptions;
 pub(crate) use profile::ProfileChoice;
+pub(crate) use reading::{Reading, unread};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -41,7 +43,7 @@ Examples:
   palpate check scenes/cup.json --json
 
 Exit status: 0 if the answer is yes, 1 if it is no, 2 if the input cannot be used,
-130 if a signal ended the run.";
+130 if a signal ended the run, 141 if the reader of the answer left.";
 
 /// Signed distance functions that can be touched.
 #[derive(Debug, Parser)]

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use palpate::device::{DeviceProfile, PROFILES, profile_named};
-use palpate::scene::{device_from_json, unknown_name};
+use palpate::scene::{device_from_file, unknown_name};
 
 use crate::output::shown_lines;
 
@@ -38,12 +38,10 @@ impl FromStr for ProfileChoice {
         if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
             return Self::named(text);
         }
-        // What the file holds must not steer a terminal.
-        let wrong = |error: String| shown_lines(&error).into_owned();
-        let bytes = std::fs::read(&path).map_err(|error| wrong(error.to_string()))?;
-        let read = device_from_json(&bytes).map_err(|error| {
+        let read = device_from_file(&path).map_err(|error| {
             let problems: Vec<_> = error.problems().map(ToString::to_string).collect();
-            wrong(problems.join("\n"))
+            // What the file holds must not steer a terminal.
+            shown_lines(&problems.join("\n")).into_owned()
         });
         Ok(Self { name: text.to_owned(), profile: read?, file: Some(path) })
     }

@@ -13,6 +13,7 @@ use palpate::scene::{
     AnyScene, BuiltScene, ContactsAnswer, ContactsQuestion, PairContacts, Question,
 };
 
+use crate::arguments::Reading;
 use crate::arguments::numbers::{count, length, length_or_zero, zero_or_more};
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
@@ -21,7 +22,7 @@ use crate::{ask, emptiness, input, output, views};
 
 /// Finds the pairs that touch; the answer is no if none do.
 pub(crate) fn run(options: &ContactOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
-    let named = input::scene(Some(&options.scene))?;
+    let named = input::scene(Some(&options.scene), options.reading)?;
     match &named.scene {
         AnyScene::Planar(scene) => answer(options, scene, interrupt),
         AnyScene::Spatial(scene) => answer(options, scene, interrupt),
@@ -125,6 +126,8 @@ pub(crate) struct ContactOptions {
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }
 
 /// What counts as touching, and how finely contacts are found.

@@ -13,6 +13,7 @@ use palpate::query::{Element, Limits};
 use palpate::scene::{AnyScene, BuiltScene};
 use serde::Serialize;
 
+use crate::arguments::Reading;
 use crate::arguments::numbers::{count, length_or_zero};
 use crate::input;
 use crate::outcome::{Failure, Outcome};
@@ -26,10 +27,10 @@ pub(crate) mod pair;
 const TOLERANCE: f64 = 1e-4;
 
 pub(crate) fn run(options: &DescendOptions) -> Result<Outcome, Failure> {
-    let mut files = Files::reading([options.scene.as_path()]);
+    let mut files = Files::reading([options.scene.as_path()], options.reading);
     let picture = options.plot.as_deref().map(|path| Picture::new(&mut files, path));
     let picture = picture.transpose()?;
-    match &input::scene(Some(&options.scene))?.scene {
+    match &input::scene(Some(&options.scene), options.reading)?.scene {
         AnyScene::Planar(scene) => descend(options, scene, picture.as_ref()),
         AnyScene::Spatial(scene) => descend(options, scene, picture.as_ref()),
     }
@@ -199,6 +200,8 @@ pub(crate) struct DescendOptions {
     /// Print JSON, with the points of the path.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }
 
 /// Most steps of the naive descent, whose path is kept.

@@ -9,6 +9,7 @@ use clap::Args;
 use palpate::query::AtPoint;
 use palpate::scene::{AnyScene, BallAnswer, Balls, BuiltScene, PointQuestion, Question};
 
+use crate::arguments::Reading;
 use crate::arguments::numbers::count;
 use crate::ask;
 use crate::input::{self, AXES};
@@ -22,7 +23,7 @@ pub(crate) fn run(options: &EvalOptions, interrupt: &Interrupt) -> Result<Outcom
     let inputs = [Some(options.scene.as_path()), options.points.as_deref()];
     let destination = match &options.output {
         Some(path) => {
-            let mut files = Files::reading(inputs.into_iter().flatten());
+            let mut files = Files::reading(inputs.into_iter().flatten(), options.reading);
             let destination = files.output(path)?;
             if let Some(part) = destination.part() {
                 files.output(&part)?;
@@ -31,7 +32,7 @@ pub(crate) fn run(options: &EvalOptions, interrupt: &Interrupt) -> Result<Outcom
         }
         None => Destination::standard(),
     };
-    match &input::scene(Some(&options.scene))?.scene {
+    match &input::scene(Some(&options.scene), options.reading)?.scene {
         AnyScene::Planar(scene) => evaluate(scene, options, &destination, interrupt),
         AnyScene::Spatial(scene) => evaluate(scene, options, &destination, interrupt),
     }
@@ -103,6 +104,8 @@ pub(crate) struct EvalOptions {
     /// Print JSON: one object, or one per line for many points.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }
 
 /// The columns of a row.

@@ -13,6 +13,7 @@ use palpate::scene::{BallAnswer, Balls, Versioned};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::arguments::Reading;
 use crate::ask;
 use crate::eval::EvalOptions;
 use crate::interrupt::{self, Interrupt};
@@ -45,7 +46,13 @@ impl<const D: usize> Job<'_, D> {
         interrupt: &Interrupt,
     ) -> Result<Outcome, Failure> {
         let pool = interrupt::pool(options.threads)?;
-        let stream = Stream { job: self, as_json: options.json, pool, interrupt };
+        let stream = Stream {
+            job: self,
+            as_json: options.json,
+            reading: options.reading,
+            pool,
+            interrupt,
+        };
         let is_whole = |(outcome, _): &(Outcome, usize)| *outcome != Outcome::Interrupted;
         let (outcome, done) = destination.write_whole(|out| stream.evaluate(out), is_whole)?;
         if outcome == Outcome::Interrupted {
@@ -67,6 +74,7 @@ impl<const D: usize> Job<'_, D> {
 struct Stream<'a, const D: usize> {
     job: Job<'a, D>,
     as_json: bool,
+    reading: Reading,
     pool: rayon::ThreadPool,
     interrupt: &'a Interrupt,
 }
@@ -75,7 +83,7 @@ impl<const D: usize> Stream<'_, D> {
     /// Writes the answers, batch by batch, and returns for how many points. An interrupted run
     /// ends after a whole row.
     fn evaluate(&self, out: &mut dyn Write) -> Result<(Outcome, usize), Failure> {
-        let mut table = Table::open(self.job.points)?;
+        let mut table = Table::open(self.job.points, self.reading)?;
         let columns = coordinates::<D>(&table, &format!("a point in {D}D"), &[])?;
         let size = std::fs::metadata(self.job.points).map_or(0, |metadata| metadata.len());
         let bar = bar(size);

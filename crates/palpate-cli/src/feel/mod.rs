@@ -19,10 +19,10 @@ use palpate::servo_loop::{Ending, Pace, Recorder, RunOptions, RunReport, run as 
 use palpate::sim::HandPath;
 use palpate::vibration::{ACTUATORS, Actuator, actuator_named};
 
-use crate::arguments::ProfileChoice;
 use crate::arguments::numbers::{
     count, length, length_or_zero, positive, within, zero_or_more,
 };
+use crate::arguments::{ProfileChoice, Reading};
 use crate::input::{self, Named};
 use crate::interrupt::Interrupt;
 use crate::live::PageOptions;
@@ -53,7 +53,7 @@ const LIVE_EVERY: Duration = Duration::from_millis(100);
 
 pub(crate) fn run(options: &FeelOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let outputs = Outputs::of(options)?;
-    let named = input::scene(options.scene.as_deref())?;
+    let named = input::scene(options.scene.as_deref(), options.reading)?;
     match &named.scene {
         AnyScene::Planar(scene) => feel(&named, scene, options, &outputs, interrupt),
         AnyScene::Spatial(scene) => feel(&named, scene, options, &outputs, interrupt),
@@ -439,6 +439,8 @@ pub(crate) struct FeelOptions {
     /// Print the report as JSON.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }
 
 /// What the hand holds.

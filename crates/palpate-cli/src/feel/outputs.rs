@@ -48,7 +48,7 @@ impl Outputs {
     pub(super) fn of(options: &FeelOptions) -> Result<Self, Failure> {
         let inputs = [&options.scene, &options.path].into_iter().filter_map(Option::as_deref);
         let device = options.device.as_ref().and_then(DeviceChoice::file);
-        let mut files = Files::reading(inputs.chain(device));
+        let mut files = Files::reading(inputs.chain(device), options.reading);
         Ok(Self {
             trace: options
                 .trace

@@ -74,7 +74,7 @@ pub(super) fn in_file<const D: usize>(
              `points` of the scene's tool, say how many there are",
         ));
     }
-    let all = input::read::<D>(file)?;
+    let all = input::read::<D>(file, options.reading)?;
     match (&all[..], scene.contact_points().count()) {
         (_, 0) => Ok(all),
         ([hand], _) => paths(&HandWay::along(scene, hand.clone())),

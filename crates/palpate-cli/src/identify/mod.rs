@@ -18,8 +18,8 @@ use palpate::sim::{
 };
 use report::Report;
 
-use crate::arguments::ProfileChoice;
 use crate::arguments::numbers::{count, positive, within, zero_or_more};
+use crate::arguments::{ProfileChoice, Reading};
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
 use crate::output::{self, Destination, Files};
@@ -41,7 +41,7 @@ pub(crate) fn run(
 ) -> Result<Outcome, Failure> {
     let given = [Some(&options.device), options.plant.as_ref()];
     let inputs = given.into_iter().flatten().filter_map(|choice| choice.file.as_deref());
-    let mut files = Files::reading(inputs);
+    let mut files = Files::reading(inputs, Reading::default());
     let out = options.out.as_deref();
     let out = out.map(|path| files.output_as(path, "a profile", "json")).transpose()?;
     let profile = &options.device.profile;

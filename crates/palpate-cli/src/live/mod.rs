@@ -12,10 +12,11 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use palpate::scene::read_file;
 use palpate_live::{Live, LiveError};
 
-use crate::arguments::ProfileChoice;
 use crate::arguments::numbers::{count, within};
+use crate::arguments::{ProfileChoice, Reading};
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
@@ -30,13 +31,16 @@ const AWAY: Duration = Duration::from_secs(3);
 /// How long edits that wait may take when the program ends.
 const SETTLING: Duration = Duration::from_secs(1);
 
+/// The largest file of a port and a token [bytes].
+const LONGEST_TOKEN: u64 = 4096;
+
 /// The contact points of the hand on the built-in gallery: two hands.
 const FINGERS: usize = 10;
 
 pub(crate) fn run(options: &LiveOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     // An error of the scene is reported as by every command, before anything is served.
-    input::scene(options.scene.as_deref())?;
-    let (name, text) = input::scene_text(options.scene.as_deref())?;
+    input::scene(options.scene.as_deref(), options.reading)?;
+    let (name, text) = input::scene_text(options.scene.as_deref(), options.reading)?;
     let points = options.points.unwrap_or(if options.scene.is_none() { FINGERS } else { 1 });
     let served = palpate_live::LiveOptions {
         points,
@@ -144,7 +148,7 @@ pub(crate) fn beside(
     rate: f64,
     interrupt: &Interrupt,
 ) -> Result<Option<Served>, Failure> {
-    let (name, text) = input::scene_text(None)?;
+    let (name, text) = input::gallery();
     let options = palpate_live::LiveOptions {
         points: FINGERS,
         rate,
@@ -211,6 +215,8 @@ pub(crate) struct LiveOptions {
     /// Ticks a second [Hz].
     #[arg(long, allow_negative_numbers = true, default_value = "1000", value_parser = within(1.0, 100_000.0, "Hz"))]
     pub(crate) rate: f64,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }
 
 /// Where the page is served.
@@ -252,8 +258,8 @@ impl Place {
     /// order keep theirs.
     fn of(asked: &PageOptions, scene: Option<&Path>) -> Result<Self, Failure> {
         if let Some(file) = &asked.token_file {
-            let token = match std::fs::read_to_string(file) {
-                Ok(text) => Some(text.trim().to_owned()),
+            let token = match read_file(file, LONGEST_TOKEN) {
+                Ok(text) => Some(String::from_utf8_lossy(&text).trim().to_owned()),
                 Err(error) if error.kind() == ErrorKind::NotFound => None,
                 Err(error) => return Err(Failure::file(file, error)),
             };
@@ -265,7 +271,8 @@ impl Place {
         let name = scene.map_or_else(|| "page".to_owned(), name_for);
         let file = folder.join("palpate").join(name);
         // A damaged file counts as missing.
-        let text = std::fs::read_to_string(&file).unwrap_or_default();
+        let text = read_file(&file, LONGEST_TOKEN).unwrap_or_default();
+        let text = String::from_utf8_lossy(&text);
         let (port, token) = text.trim().split_once(' ').unzip();
         let port = port.and_then(|port| port.parse().ok());
         let is_token =

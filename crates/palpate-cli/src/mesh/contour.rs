@@ -46,7 +46,7 @@ pub(super) fn run(
     output: &Path,
     interrupt: &Interrupt,
 ) -> Result<Outcome, Failure> {
-    let mut files = Files::reading([options.file.as_path()]);
+    let mut files = Files::reading([options.file.as_path()], options.reading);
     let destination = files.output(output)?;
     let format = Format::of(output).ok_or_else(|| {
         Failure::file(output, "the name of a mesh must end in .obj, .stl, .ply or .glb")
@@ -157,7 +157,7 @@ fn shape(options: &MeshOptions) -> Result<Shape<3>, Failure> {
                        \"weld_within\" beside \"file\"";
         return Err(Failure::file(&options.file, problem));
     }
-    let named = input::scene(Some(&options.file))?;
+    let named = input::scene(Some(&options.file), options.reading)?;
     let AnyScene::Spatial(scene) = named.scene else {
         let problem = "the scene is in the plane; a mesh needs \"dimension\": 3";
         return Err(Failure::file(&options.file, problem));

@@ -12,8 +12,9 @@ use palpate::grid::Volume;
 use same_file::Handle;
 use serde_json::Value;
 
-use super::{Destination, Target, beside, folder, shown};
-use crate::input;
+use super::beside::Beside;
+use super::{Destination, Target, folder, shown};
+use crate::arguments::Reading;
 use crate::outcome::Failure;
 
 /// The files that a run reads and writes, all different by whatever name.
@@ -36,10 +37,10 @@ enum Identity {
 
 /// The files of meshes, volumes and grids that a scene names, of the samples of volumes too. None of what is no scene:
 /// that is told where it is read.
-fn files_of_scene(path: &Path) -> Vec<PathBuf> {
+fn files_of_scene(path: &Path, reading: Reading) -> Vec<PathBuf> {
     // A pipe can be read once only.
     let is_file = fs::metadata(path).is_ok_and(|found| found.is_file());
-    let text = if is_file { input::bytes(path).unwrap_or_default() } else { Vec::new() };
+    let text = if is_file { reading.bytes(path).unwrap_or_default() } else { Vec::new() };
     let (mut waiting, mut names) = (Vec::new(), Vec::new());
     waiting.extend(serde_json::from_slice::<Value>(&text));
     while let Some(value) = waiting.pop() {
@@ -64,16 +65,19 @@ fn files_of_scene(path: &Path) -> Vec<PathBuf> {
 
 impl Files {
     /// A run that reads `inputs`, and what scenes among them name.
-    pub(crate) fn reading<'a>(inputs: impl IntoIterator<Item = &'a Path>) -> Self {
+    pub(crate) fn reading<'a>(
+        inputs: impl IntoIterator<Item = &'a Path>,
+        reading: Reading,
+    ) -> Self {
         // A missing input is an error where it is read; a pipe cannot be overwritten.
         let known = |path: PathBuf| {
             let is_file = fs::metadata(&path).is_ok_and(|metadata| metadata.is_file());
             let handle = is_file.then(|| Handle::from_path(&path).ok())??;
             Some((path, Identity::Existing(handle)))
         };
-        let inputs = inputs
-            .into_iter()
-            .flat_map(|input| std::iter::once(input.to_owned()).chain(files_of_scene(input)));
+        let inputs = inputs.into_iter().flat_map(|input| {
+            std::iter::once(input.to_owned()).chain(files_of_scene(input, reading))
+        });
         Self { inputs: inputs.filter_map(known).collect(), outputs: Vec::new() }
     }
 
@@ -128,8 +132,8 @@ impl Files {
         if is_special(path) {
             return Ok(direct(path));
         }
-        // Creating and removing a file shows that the folder can be written to.
-        beside(&target).map_err(|error| {
+        // Creating a file shows that the folder can be written to.
+        Beside::new(&target).map_err(|error| {
             let folder = folder(&target).display().to_string();
             wrong(format!("its folder {} cannot be written to: {error}", shown(&folder)))
         })?;
@@ -210,7 +214,7 @@ mod tests {
         fs::create_dir(folder.path("sub")).unwrap();
         fs::hard_link(folder.path("in.csv"), folder.path("hard.csv")).unwrap();
         let input = folder.path("in.csv");
-        let mut files = Files::reading([input.as_path()]);
+        let mut files = Files::reading([input.as_path()], Reading::default());
         let mut names = vec!["in.csv", "./in.csv", "sub/../in.csv", "hard.csv"];
         #[cfg(unix)]
         {

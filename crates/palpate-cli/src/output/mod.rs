@@ -18,14 +18,17 @@ use std::path::{Path, PathBuf};
 use palpate::scene::Versioned;
 use palpate::scene::text::shown_json;
 use serde::Serialize;
-use tempfile::NamedTempFile;
 
+use self::beside::Beside;
+use self::standard::StandardOutput;
 use crate::outcome::{Failure, Outcome};
 
 pub(crate) use files::{Files, ending};
 pub(crate) use palpate::scene::text::{counted, shown, shown_lines};
 
+mod beside;
 mod files;
+mod standard;
 
 /// Where an output goes.
 #[derive(Debug)]
@@ -87,7 +90,7 @@ impl Destination {
         is_whole: impl FnOnce(&T) -> bool,
     ) -> Result<T, Failure> {
         match &self.target {
-            Target::Standard => filled(io::stdout(), fill),
+            Target::Standard => filled(StandardOutput::new(), fill),
             Target::Direct => {
                 // Append: a path such as /dev/stdout may lead to a file that other programs
                 // write.
@@ -97,6 +100,7 @@ impl Destination {
             Target::Replaced(place) => replaced(place, fill, is_whole),
         }
         .map_err(|failure| match failure {
+            failure if failure.is_closed_pipe() => failure,
             Failure::Output(error) if !self.name.as_os_str().is_empty() => {
                 Failure::file(&self.name, error)
             }
@@ -122,18 +126,18 @@ fn replaced<T>(
     fill: impl FnOnce(&mut (dyn Write + Send)) -> Result<T, Failure>,
     is_whole: impl FnOnce(&T) -> bool,
 ) -> Result<T, Failure> {
-    let file = beside(place)?;
-    let answer = filled(file.as_file(), fill)?;
+    let beside = Beside::new(place)?;
+    let answer = filled(beside.file(), fill)?;
     if !is_whole(&answer) {
-        file.persist(part(place)).map_err(|refused| refused.error)?;
+        beside.persist(&part(place))?;
         return Ok(answer);
     }
     if let Ok(old) = fs::metadata(place) {
-        file.as_file().set_permissions(old.permissions())?;
+        beside.file().set_permissions(old.permissions())?;
         // Synchronised first, so the old file goes only once the new one is on the disk.
-        file.as_file().sync_data()?;
+        beside.file().sync_data()?;
     }
-    file.persist(place).map_err(|refused| refused.error)?;
+    beside.persist(place)?;
     Ok(answer)
 }
 
@@ -147,19 +151,6 @@ fn part(place: &Path) -> PathBuf {
 /// Creates a folder for outputs, and missing ones above it.
 pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|error| Failure::file(path, error))
-}
-
-/// A new file in the folder of `place`, removed unless it is renamed.
-fn beside(place: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".palpate-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // The permissions of any new file, from which the user's mask takes away.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder(place))
 }
 
 /// The folder that `place` is in.
@@ -179,12 +170,12 @@ pub(crate) fn microseconds(time: f64) -> String {
 /// obey.
 #[derive(Debug)]
 pub(crate) struct Answer {
-    out: io::StdoutLock<'static>,
+    out: StandardOutput,
 }
 
 /// The standard output, for the answer of a command.
 pub(crate) fn answer() -> Answer {
-    Answer { out: io::stdout().lock() }
+    Answer { out: StandardOutput::new() }
 }
 
 impl Answer {
@@ -226,10 +217,13 @@ pub(crate) fn ended(outcome: Outcome) -> Result<Outcome, Failure> {
 /// Prints help on standard output, or an error of the command line on standard error; returns
 /// the exit status.
 pub(crate) fn usage(refused: &clap::Error) -> Result<u8, Failure> {
-    let printed = refused.print().and_then(|()| io::stdout().flush());
-    // Without standard error there is nowhere to report that an error could not be printed.
     if !refused.use_stderr() {
-        printed?;
+        standard::check()?;
+        refused.print()?;
+        io::stdout().flush()?;
+    } else {
+        // Ignored: without standard error there is nowhere to report it.
+        let _ = refused.print();
     }
     Ok(u8::try_from(refused.exit_code()).unwrap_or(Failure::STATUS))
 }

@@ -71,7 +71,7 @@ impl Drawn {
 impl Frames {
     /// Checks that all files can be written.
     pub(super) fn of(options: &RenderOptions) -> Result<Self, Failure> {
-        let mut files = Files::reading([options.scene.as_path()]);
+        let mut files = Files::reading([options.scene.as_path()], options.reading);
         let stem = Path::new(options.scene.file_stem().unwrap_or_default());
         if let Some(pictures) = options.turntable {
             check(options, pictures)?;

@@ -16,6 +16,7 @@ use palpate::render::{
 use palpate::scene::{AnyScene, BuiltBody, BuiltScene, WrittenView};
 use serde::Serialize;
 
+use crate::arguments::Reading;
 use crate::arguments::numbers::{coordinate, count, length, positive, within, zero_or_more};
 use crate::contact::{ContactQuestion, Touched};
 use crate::interrupt::{self, Interrupt};
@@ -30,7 +31,7 @@ mod frames;
 pub(crate) fn run(options: &RenderOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let frames = Frames::of(options)?;
     options.question.refuse_unless(options.contacts)?;
-    let named = input::scene(Some(&options.scene))?;
+    let named = input::scene(Some(&options.scene), options.reading)?;
     let AnyScene::Spatial(scene) = &named.scene else {
         let problem = "the scene is in the plane, which `palpate plot` draws; render needs \"dimension\": 3";
         return Err(Failure::file(&options.scene, problem));
@@ -143,6 +144,8 @@ pub(crate) struct RenderOptions {
     /// Print what was drawn as JSON.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }
 
 /// The shadows of a picture.

@@ -11,6 +11,7 @@ use palpate::field::Vector;
 use palpate::query::Verdict;
 use palpate::scene::{Answer, AnyScene, BuiltScene, Question, SweepQuestion};
 
+use crate::arguments::Reading;
 use crate::arguments::numbers::{count, length, positive};
 use crate::interrupt::Interrupt;
 use crate::outcome::{Failure, Outcome};
@@ -24,10 +25,11 @@ mod local;
 /// Finds when pairs touch first; the answer is no if none do.
 pub(crate) fn run(options: &SweepOptions, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let inputs = [Some(options.scene.as_path()), options.motion.as_deref()];
-    let mut files = Files::reading(inputs.into_iter().flatten());
+    let mut files = Files::reading(inputs.into_iter().flatten(), options.reading);
     let picture = options.plot.as_deref().map(|path| Picture::new(&mut files, path));
     let picture = picture.transpose()?;
-    let named = input::moving(Some(&options.scene), options.motion.as_deref())?;
+    let named =
+        input::moving(Some(&options.scene), options.motion.as_deref(), options.reading)?;
     match &named.scene {
         AnyScene::Planar(_) if options.plane.is_some() => Err(Failure::input(
             "--plane is for scenes in space; this scene is in the plane, and drawn whole",
@@ -164,4 +166,6 @@ pub(crate) struct SweepOptions {
     /// Print JSON.
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
 }

@@ -3,14 +3,18 @@
 
 //! Tables in CSV files.
 
+mod limited;
+
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, ErrorKind as IoErrorKind};
 use std::path::{Path, PathBuf};
 
 use csv::{ErrorKind, StringRecord};
 use palpate::field::LARGEST_LENGTH;
-use palpate::scene::{NotUtf8, near_names, shortened, utf8};
+use palpate::scene::{NotUtf8, near_names, shortened, too_large, utf8};
 
+use self::limited::Limited;
+use crate::arguments::{Reading, unread};
 use crate::input::AXES;
 use crate::kind::Kind;
 use crate::outcome::Failure;
@@ -24,10 +28,13 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// The most problems that are told.
 const MOST: usize = 20;
 
+/// The most names of columns that are told.
+const MOST_NAMES: usize = 60;
+
 /// A CSV file, read row by row. Bad values are noted, and told of all together.
 pub(crate) struct Table {
     path: PathBuf,
-    reader: csv::Reader<BufReader<File>>,
+    reader: csv::Reader<Limited<BufReader<File>>>,
     header: Header,
     record: StringRecord,
     /// The first problems, and how many there are in all.
@@ -40,13 +47,18 @@ impl Table {
     ///
     /// # Errors
     ///
-    /// If the file is something else than a table with commas and a header: what it is.
-    pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
+    /// If the file is something else than a table with commas and a header: what it is; if it is too
+    /// large.
+    pub(crate) fn open(path: &Path, reading: Reading) -> Result<Self, Failure> {
         let wrong = |problem: String| Failure::file(path, problem);
         if path.is_dir() {
             return Err(wrong("is a folder; name a file in it".into()));
         }
         let file = File::open(path).map_err(|error| Failure::file(path, error))?;
+        let most = reading.largest_file;
+        if file.metadata().is_ok_and(|found| found.len() > most) {
+            return Err(unread(path, &too_large(most)));
+        }
         let mut file = BufReader::with_capacity(HEAD, file);
         // One read, so that a pipe need not be full before its first row is answered.
         let head = file.fill_buf().map_err(|error| Failure::file(path, error))?;
@@ -64,9 +76,14 @@ impl Table {
         if head.starts_with(BYTE_ORDER_MARK) {
             file.consume(BYTE_ORDER_MARK.len());
         }
-        let mut reader =
-            csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(file);
-        let fields = reader.headers().map_err(|error| wrong(in_words(&error)))?.clone();
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .flexible(true)
+            .from_reader(Limited::new(file, most));
+        let fields = match reader.headers() {
+            Ok(fields) => fields.clone(),
+            Err(error) => return Err(refused(path, 1, error)),
+        };
         let line = reader.position().line().saturating_sub(1).max(1);
         let header = Header::new(&fields, line).map_err(wrong)?;
         let (path, record) = (path.to_owned(), StringRecord::new());
@@ -91,13 +108,10 @@ impl Table {
     /// Goes to the next row; `false` if there is none. A row with another number of fields than
     /// the header is noted.
     pub(crate) fn advance(&mut self) -> Result<bool, Failure> {
-        let is_there = match self.reader.read_record(&mut self.record) {
-            Ok(is_there) => is_there,
-            Err(error) => {
-                let problem = in_words(&error);
-                return Err(self.failure(problem));
-            }
-        };
+        let line = self.reader.position().line();
+        self.reader.get_mut().begin_row();
+        let read = self.reader.read_record(&mut self.record);
+        let is_there = read.map_err(|error| refused(&self.path, line, error))?;
         let (fields, columns) = (self.record.len(), self.header.len());
         if is_there && fields != columns {
             let comma = if fields > columns {
@@ -199,14 +213,21 @@ fn why_no_number(field: &str) -> String {
     }
 }
 
-/// An error of a reader, with its line.
-fn in_words(error: &csv::Error) -> String {
-    match error.kind() {
+/// The failure to read the row that begins in a line.
+fn refused(path: &Path, line: u64, error: csv::Error) -> Failure {
+    match error.into_kind() {
         ErrorKind::Utf8 { pos, .. } => {
-            let line = pos.as_ref().map_or(0, csv::Position::line);
-            format!("line {line} is not UTF-8; save the file as UTF-8")
+            let line = pos.as_ref().map_or(line, csv::Position::line);
+            Failure::file(
+                path,
+                format_args!("line {line} is not UTF-8; save the file as UTF-8"),
+            )
         }
-        _ => error.to_string(),
+        ErrorKind::Io(error) if error.kind() == IoErrorKind::InvalidData => {
+            Failure::file(path, format_args!("line {line}: {error}"))
+        }
+        ErrorKind::Io(error) => unread(path, &error),
+        _ => Failure::file(path, format_args!("line {line} is no row of a table (CSV)")),
     }
 }
 
@@ -306,7 +327,11 @@ impl Header {
             return Ok(names.iter().filter_map(|name| self.place(name)).collect());
         }
         let (line, names) = (self.line, names.join(","));
-        let found = self.names.join(",");
+        let shown = self.names.iter().take(MOST_NAMES).map(|name| shortened(name));
+        let mut found = shown.collect::<Vec<_>>().join(",");
+        if self.len() > MOST_NAMES {
+            found.push_str(&format!(",… ({} in all)", self.len()));
+        }
         let problems = missing.join("; ");
         Err(format!(
             "line {line}: {what} has the columns {names}, the file has {found}: {problems}"

@@ -6,6 +6,7 @@
 
 mod asked;
 mod balls;
+mod bounds;
 mod common;
 mod contact;
 mod descents;

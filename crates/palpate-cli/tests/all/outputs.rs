@@ -7,7 +7,7 @@ use std::fs;
 
 use crate::common::{Folder, errors, json, palpate, program, status, text};
 
-const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
+pub(crate) const BALL: &str = r#"{ "palpate": 1, "dimension": 3,
   "bodies": [ { "name": "ball", "shape": { "ball": { "radius": 0.5 } } } ] }"#;
 
 const POINTS: &str = "x_m,y_m,z_m\n0,0,0\n0,1,0\n";

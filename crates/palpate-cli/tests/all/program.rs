@@ -48,8 +48,8 @@ fn a_scene_that_is_not_there_is_named_once() {
 #[test]
 fn a_scene_without_an_end_is_refused() {
     let output = palpate(&["check", "/dev/zero"]);
-    let expected =
-        "palpate: /dev/zero: is longer than 268435456 bytes, the most that are read\n";
+    let expected = "palpate: /dev/zero: is longer than 268435456 bytes, the most that are read; \
+                    --largest-file raises that\n";
     assert_eq!(
         (status(&output), String::from_utf8_lossy(&output.stderr).as_ref()),
         (2, expected)

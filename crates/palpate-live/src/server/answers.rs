@@ -161,3 +161,22 @@ impl What {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A method that a path does not allow was refused without a word.
+    #[test]
+    fn every_refusal_says_why() {
+        for status in (400..600).filter_map(|code| StatusCode::from_u16(code).ok()) {
+            let answer = refused(status, "/stop");
+            assert!(answer.body().ends_with(b".\n"), "{status}");
+            let length = answer.body().len().to_string();
+            let head = String::from_utf8(head(&answer)).unwrap();
+            assert!(head.contains(&format!("content-length: {length}\r\n")), "{head}");
+        }
+        let answer = refused(StatusCode::METHOD_NOT_ALLOWED, "/stop");
+        assert_eq!(answer.headers()[ALLOW], "POST");
+    }
+}

@@ -7,10 +7,10 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use palpate::scene::{AnyScene, Scene, SceneError, SceneProblem};
+use palpate::scene::{AnyScene, Resources, Scene, SceneError, SceneProblem};
 use serde_json::Value;
 
-use super::file::{LARGEST, read_file, replace};
+use super::file::{LARGEST, MOST_NODES, read_file, replace};
 use crate::wire::{Change, DocumentTold, Problem};
 
 /// The deepest that a part of a scene may be nested: more than any scene is.
@@ -52,10 +52,9 @@ impl Version {
             let size = text.len();
             return Err(format!("a scene has at most {LARGEST} bytes here, got {size}").into());
         }
-        let scene = match file {
-            None => Scene::from_json(text)?,
-            Some(file) => Scene::from_json_in(text, file.parent().unwrap_or(Path::new("")))?,
-        };
+        let mut resources = Resources::default().with_most_nodes(MOST_NODES);
+        resources.folder = file.map(|file| file.parent().unwrap_or(Path::new("")).to_owned());
+        let scene = Scene::from_json_in(text, resources)?;
         Ok(Arc::new(Self { scene, text: text.to_owned() }))
     }
 }
@@ -407,6 +406,38 @@ mod tests {
         let changes: Vec<_> = (0..40).map(change).collect();
         let refusal = document.edit(&changes, false).unwrap_err();
         assert!(refusal.message.contains("200 deep"), "{refusal:?}");
+    }
+
+    /// Each edit of a scene that unfolds took seconds, in which no other was read.
+    #[test]
+    fn what_unfolds_to_too_many_nodes_is_refused() {
+        let mut document = coin();
+        let list = vec![json!("coin"); MOST_NODES];
+        let changes = [
+            Change {
+                at: "/shapes".into(),
+                to: Some(json!({ "coin": { "circle": { "radius": 1 } } })),
+            },
+            Change { at: "/bodies/0/shape".into(), to: Some(json!({ "union": list })) },
+        ];
+        let refusal = document.edit(&changes, false).unwrap_err();
+        assert!(refusal.message.contains("more than 20000 nodes"), "{refusal:?}");
+        assert!(!document.can_undo() && radius(&document) == 0.5);
+    }
+
+    /// The text of another file was once written over what a link there leads to.
+    #[cfg(unix)]
+    #[test]
+    fn a_scene_is_saved_over_no_link_out_of_its_folder() {
+        let [own, other] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+        let outside = other.path().join("outside.json");
+        std::os::unix::fs::symlink(&outside, own.path().join("out.json")).unwrap();
+        let file = own.path().join("coin.json");
+        let mut document = Document::open("coin".into(), Some(file.clone()), SCENE).unwrap();
+        let refusal = document.save_as("out.json", true).unwrap_err();
+        assert!(refusal.message.contains("is a link out of its folder"), "{refusal:?}");
+        std::os::unix::fs::symlink(&outside, &file).unwrap();
+        assert!(document.save(true).is_err() && !outside.exists());
     }
 
     #[test]

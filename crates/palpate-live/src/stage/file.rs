@@ -6,17 +6,26 @@
 use std::io::{Error, ErrorKind, Result, Write};
 use std::path::{Path, PathBuf};
 
+use palpate::scene::utf8;
+
 /// The largest scene [bytes]: what the pages are told of it is a few times as large.
 pub(super) const LARGEST: usize = 4 << 20;
+
+/// The most nodes of a scene, references followed: an edit builds all of them, and the next one
+/// waits for that.
+pub(super) const MOST_NODES: usize = 20_000;
 
 /// The most links that a path leads over, as on Linux.
 const MOST_LINKS: usize = 40;
 
 /// Writes a file beside and renames it, so that there is a whole file at all times; if it `is_new`, over
 /// none that came meanwhile.
+///
+/// # Errors
+///
+/// If it cannot be written, or is a link out of its folder.
 pub(super) fn replace(file: &Path, text: &str, is_new: bool) -> Result<()> {
-    // A link stays one: what it leads to is replaced.
-    let file = std::fs::canonicalize(file).unwrap_or_else(|_| end_of_links(file));
+    let file = behind_links(file)?;
     let before = std::fs::metadata(&file).ok();
     if before.as_ref().is_some_and(|before| !before.is_file()) {
         return Err(Error::new(ErrorKind::InvalidInput, "is no file: save as another one"));
@@ -25,9 +34,7 @@ pub(super) fn replace(file: &Path, text: &str, is_new: bool) -> Result<()> {
         let why = "is read-only: save as another file, or make it writable";
         return Err(Error::new(ErrorKind::PermissionDenied, why));
     }
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
-    let mut beside = new_file().tempfile_in(folder)?;
+    let mut beside = new_file().tempfile_in(folder(&file))?;
     beside.write_all(text.as_bytes())?;
     beside.as_file().sync_all()?;
     match &before {
@@ -45,6 +52,23 @@ pub(super) fn replace(file: &Path, text: &str, is_new: bool) -> Result<()> {
         beside.persist(&file)?
     };
     Ok(())
+}
+
+/// What a link in the folder of a file leads to, which is replaced: the link stays one.
+fn behind_links(file: &Path) -> Result<PathBuf> {
+    let end = std::fs::canonicalize(file).unwrap_or_else(|_| end_of_links(file));
+    if !folder(&end).canonicalize()?.starts_with(folder(file).canonicalize()?) {
+        let why =
+            "is a link out of its folder: open the file that it leads to, or save as another";
+        return Err(Error::new(ErrorKind::InvalidInput, why));
+    }
+    Ok(end)
+}
+
+/// The folder that a file is in.
+fn folder(file: &Path) -> &Path {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder.unwrap_or(Path::new("."))
 }
 
 /// Where a link leads whose end is not there.
@@ -83,18 +107,42 @@ fn has_other_names(metadata: &std::fs::Metadata) -> bool {
 ///
 /// If it cannot be read, is no regular file, or is too large.
 pub(super) fn read_file(file: &Path) -> Result<String> {
-    let metadata = std::fs::metadata(file)?;
-    if !metadata.is_file() || metadata.len() > LARGEST as u64 {
-        let why = format!("is no file of at most {LARGEST} bytes");
-        return Err(Error::new(ErrorKind::InvalidInput, why));
+    if !std::fs::metadata(file)?.is_file() {
+        return Err(Error::new(ErrorKind::InvalidInput, "is no file"));
     }
-    std::fs::read_to_string(file)
+    let bytes = palpate::scene::read_file(file, LARGEST as u64)?;
+    let text = utf8(&bytes).map_err(|error| Error::new(ErrorKind::InvalidData, error))?;
+    Ok(text.to_owned())
 }
 
 #[cfg(test)]
 #[cfg(unix)]
 mod tests {
     use super::*;
+
+    /// What a link led to in another folder was once written over, or made.
+    #[test]
+    fn a_link_out_of_the_folder_is_not_followed() {
+        let [own, other] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+        let outside = other.path().join("outside.json");
+        let [link, chain, folder] =
+            ["link", "chain", "folder"].map(|name| own.path().join(name));
+        std::os::unix::fs::symlink(&outside, &link).unwrap();
+        std::os::unix::fs::symlink("link", &chain).unwrap();
+        std::os::unix::fs::symlink(other.path(), &folder).unwrap();
+        for there in [false, true] {
+            for file in [&link, &chain] {
+                let refused = replace(file, "text", false).unwrap_err().to_string();
+                assert!(refused.contains("is a link out of its folder"), "{refused}");
+                assert!(file.is_symlink() && outside.exists() == there);
+            }
+            std::fs::write(&outside, "old").unwrap();
+        }
+        assert_eq!(std::fs::read_to_string(&outside).unwrap(), "old");
+        // A folder may be reached over a link.
+        replace(&folder.join("outside.json"), "text", false).unwrap();
+        assert_eq!(std::fs::read_to_string(&outside).unwrap(), "text");
+    }
 
     /// A link whose end was deleted once became a file itself.
     #[test]

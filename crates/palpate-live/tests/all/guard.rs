@@ -109,6 +109,9 @@ fn nothing_but_the_page_is_served() {
     }
     assert_eq!(status(&live, "POST", "/", ""), 405);
     assert_eq!(status(&live, "GET", "/stop", ""), 405);
+    let refused = format!("GET /stop HTTP/1.1\r\nHost: {}\r\n\r\n", live.address());
+    let answer = raw(live.address(), &refused);
+    assert!(answer.ends_with("\r\n\r\nThis path does not allow this method.\n"), "{answer}");
     let answer = raw(
         live.address(),
         &format!("GET / HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", live.address()),

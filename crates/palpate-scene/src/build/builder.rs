@@ -73,7 +73,7 @@ impl<'a> Builder<'a> {
             planar: HashMap::new(),
             spatial: HashMap::new(),
             open: Vec::new(),
-            allowance: Allowance::default(),
+            allowance: Allowance::of(scene.resources.most_nodes),
             meshes: Vec::new(),
         }
     }

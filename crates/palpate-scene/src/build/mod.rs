@@ -30,6 +30,10 @@ use builder::{Builder, Space};
 pub use motion::{BuiltMotion, MotionJump, MotionSpeed};
 pub(crate) use object::MOST;
 
+/// The most bodies of a scene: each has a shape, a material and a place among those that a hand
+/// touches, which take a hundred times as much memory as its text.
+const MOST_BODIES: usize = 100_000;
+
 /// A built scene, in its dimension.
 #[derive(Clone, Debug)]
 pub enum AnyScene {
@@ -177,6 +181,11 @@ where
 {
     if scene.bodies.is_empty() {
         return Err(Problem::about("must have at least 1 body, got 0").into());
+    }
+    let count = scene.bodies.len();
+    if count > MOST_BODIES {
+        let message = format!("must have at most {MOST_BODIES} bodies, got {count}");
+        return Err(Problem::about(message).into());
     }
     let mut wrong = Problems::default();
     let mut bodies = Vec::with_capacity(scene.bodies.len());

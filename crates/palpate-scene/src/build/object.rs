@@ -191,24 +191,32 @@ impl Size {
     }
 }
 
-/// The nodes that were built, of at most [`MOST`], and the limits that were passed. Each is told
-/// of once: what is too large makes all that holds it too large.
-#[derive(Debug, Default)]
+/// The nodes that were built, and the limits that were passed. Each is told of once: what is too
+/// large makes all that holds it too large.
+#[derive(Debug)]
 pub(super) struct Allowance {
+    /// The most nodes.
+    most: usize,
     spent: usize,
     is_spent_told: bool,
     is_depth_told: bool,
 }
 
 impl Allowance {
+    /// At most [`MOST`] nodes, or fewer.
+    pub(super) fn of(most: Option<usize>) -> Self {
+        let most = most.map_or(MOST, |most| most.min(MOST));
+        Self { most, spent: 0, is_spent_told: false, is_depth_told: false }
+    }
+
     /// Takes the nodes of a shape that is about to be built at `level`.
     pub(super) fn take(&mut self, size: Size, level: usize) -> Result<(), Problems> {
         self.check_depth(level + size.depth)?;
         self.spent = self.spent.saturating_add(size.nodes);
-        let is_told = &mut self.is_spent_told;
-        refused_once(self.spent > MOST, is_told, || {
+        let (most, is_told) = (self.most, &mut self.is_spent_told);
+        refused_once(self.spent > most, is_told, || {
             format!(
-                "with all references followed the scene has more than {MOST} nodes, the most allowed"
+                "with all references followed the scene has more than {most} nodes, the most allowed"
             )
         })
     }

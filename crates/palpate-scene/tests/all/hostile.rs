@@ -106,6 +106,16 @@ fn a_million_references_to_one_shape_are_counted() {
     assert!(error.contains("more than 1000000 nodes"), "{error}");
 }
 
+/// A million bodies took 5 GB.
+#[test]
+fn too_many_bodies_are_counted() {
+    let body = |i| format!("{{ \"name\": \"{i}\", \"shape\": {BALL} }}");
+    let bodies = (0..=100_000).map(body).collect::<Vec<_>>().join(",");
+    let text = format!("{{ \"palpate\": 1, \"dimension\": 3, \"bodies\": [{bodies}] }}");
+    let error = error_of(&text);
+    assert!(error.ends_with("must have at most 100000 bodies, got 100001"), "{error}");
+}
+
 #[test]
 fn long_names_and_values_are_shortened() {
     let long = "x".repeat(1_000_000);
