@@ -296,6 +296,19 @@ def test_a_file_that_is_missing_is_a_missing_file(tmp_path: Path) -> None:
     assert unsaved.value.filename == str(file)
 
 
+def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
+    file = tmp_path / "scene.json"
+    pp.Scene(pp.ball(0.1)).save(file)
+    size = file.stat().st_size
+    assert pp.Scene.load(file, largest_file=size).names == ("body",)
+    with pytest.raises(pp.FileError, match=f"longer than {size - 1} bytes, .*; largest_file raises that"):
+        pp.Scene.load(file, largest_file=size - 1)
+    # It was read until the memory was full.
+    if Path("/dev/zero").exists():
+        with pytest.raises(pp.FileError, match="longer than 268435456 bytes"):
+            pp.Scene.load("/dev/zero")
+
+
 def test_a_scene_is_read_by_a_bare_name_and_equals_its_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # The folder of a bare name is an empty path, which was refused; and folders were compared.
     monkeypatch.chdir(tmp_path)

@@ -47,7 +47,7 @@ fn no_file_without_an_end_is_read_to_its_end() {
         (&["eval", "scenes/cup.json", "--points", "/dev/zero"], row),
         (&["feel", "scenes/cup.json", "--path", "/dev/zero"], row),
         (&["sweep", "scenes/cup.json", "--motion", "/dev/zero"], TOO_LARGE),
-        (&["plot", "scenes/s1.json", "--against", "/dev/zero"], TOO_LARGE),
+        (&["plot", "scenes/s1.json", "--map", "error", "--against", "/dev/zero"], TOO_LARGE),
         (&["feel", "scenes/cup.json", "--device", &simulated], profile),
         (&["devices", "--profile", device], profile),
         (&["live", "scenes/cup.json", "--token-file", "/dev/zero"], token),
