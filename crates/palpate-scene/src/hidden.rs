@@ -179,8 +179,7 @@ mod tests {
     #[test]
     fn many_bodies_in_one_place_take_a_bounded_time() {
         assert!(hidden_of_balls(3000, 1e-6).len() < 2999);
-        let within_first: Vec<_> = (1..10).map(|body| Hidden { body, within: 0 }).collect();
-        assert_eq!(hidden_of_balls(10, 0.01), within_first);
+        assert_eq!(hidden_of_balls(2, 0.03), [Hidden { body: 1, within: 0 }]);
     }
 
     #[test]
