@@ -110,9 +110,10 @@ mod tests {
     fn a_file_replaces_another_once_it_is_whole() {
         let folder = tempfile::tempdir().unwrap();
         let place = folder.path().join("out.csv");
-        let named_too = || Beside::Named(named().tempfile_in(folder.path()).unwrap());
-        for beside in [Beside::new(&place).unwrap(), Beside::new(&place).unwrap(), named_too()]
-        {
+        let usual = || Beside::new(&place).unwrap();
+        let with_a_name = || Beside::Named(named().tempfile_in(folder.path()).unwrap());
+        for new in [&usual as &dyn Fn() -> Beside, &usual, &with_a_name] {
+            let beside = new();
             beside.file().write_all(b"whole").unwrap();
             beside.persist(&place).unwrap();
             assert_eq!(fs::read(&place).unwrap(), b"whole");
