@@ -125,7 +125,7 @@ pub(crate) fn fail(error: PyErr) {
         Some(slot) => {
             slot.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
         }
-        // Where Python ends, nobody is told.
+        // While the interpreter ends, there is nobody to report to.
         None => _ = attached(|py| error.write_unraisable(py, None)),
     }
 }

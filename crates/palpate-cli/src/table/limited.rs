@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The palpate authors
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
-//! The bytes of a table, of which neither a row nor all have too many.
+//! Reads the bytes of a table. It refuses a row, or a table, with too many bytes.
 
 use std::io::{self, BufRead, Error, ErrorKind, Read};
 

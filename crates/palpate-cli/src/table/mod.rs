@@ -28,7 +28,7 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// The most problems that are told.
 const MOST: usize = 20;
 
-/// The most names of columns that are told.
+/// An error lists at most so many names of columns.
 const MOST_NAMES: usize = 60;
 
 /// A CSV file, read row by row. Bad values are noted, and told of all together.

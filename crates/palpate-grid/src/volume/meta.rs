@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! MetaImage: lines of a key and a value, the last of which tells where the samples are.
-//! Format: <https://itk.org/Wiki/ITK/MetaIO/Documentation>. What it leaves open is read as ITK reads it: fields of
+//! Format: <https://itk.org/Wiki/ITK/MetaIO/Documentation>. Where the format is silent, this reader does as ITK does: fields of
 //! several names, words for true and false, a frame that is always to the left, the back and the top of a patient.
 
 use std::collections::HashMap;

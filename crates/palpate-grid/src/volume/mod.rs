@@ -365,7 +365,7 @@ fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
-/// Refuses a head in UTF-16, of which a reader of UTF-8 would find nothing.
+/// Refuses a head in UTF-16. A reader of UTF-8 would find no fields in it.
 fn check_encoding(bytes: &[u8]) -> Result<(), VolumeProblem> {
     match utf16_is_little_endian(bytes) {
         None => Ok(()),

@@ -265,7 +265,7 @@ fn of_qform(head: &Head<'_>) -> Result<Placement, VolumeProblem> {
     Ok(Placement { steps: std::array::from_fn(|k| columns[k] * lengths[k]), origin })
 }
 
-/// The axes of the rotation of a unit quaternion, of which the head holds the last three parts.
+/// The axes of the rotation of a unit quaternion. The head holds its last three parts.
 fn rotation(parts: [f64; 3]) -> Result<[Vector<f64, 3>; 3], VolumeProblem> {
     let squares: f64 = parts.iter().map(|part| part * part).sum();
     // Parts are of single precision.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 
 //! NRRD: a text head, a blank line, samples; or the head alone, which names a file of samples.
-//! Format: <https://teem.sourceforge.net/nrrd/format.html>. What it leaves open is read as ITK reads it.
+//! Format: <https://teem.sourceforge.net/nrrd/format.html>. Where the format is silent, this reader does as ITK does.
 
 use std::collections::HashMap;
 use std::path::Path;

@@ -17,7 +17,7 @@ pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(MARK).unwrap_or(bytes)
 }
 
-/// Refuses UTF-16, of which a reader of UTF-8 would find nothing.
+/// Refuses UTF-16. A reader of UTF-8 would find no words in it.
 pub(super) fn check_encoding(bytes: &[u8]) -> Result<(), ReadProblem> {
     match utf16_is_little_endian(bytes) {
         None => Ok(()),

@@ -32,7 +32,7 @@ const QFORM: Head = Head {
     scaling: [1.0, 0.0],
 };
 
-/// The same head, of which the sform counts.
+/// The same head with an sform, which decides the place.
 const SFORM: Head = Head { codes: [0, 2], ..QFORM };
 
 const BY_QFORM: Places = [[10.0, 20.0, 30.0], [12.552834193, 23.207165784, 39.010944746]];
