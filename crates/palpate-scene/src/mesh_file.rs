@@ -400,17 +400,18 @@ impl Resources {
         Self { progress: Some(progress), ..self }
     }
 
-    /// The same with at most so many nodes, references followed: where a scene is edited, each edit
-    /// builds all of them.
+    /// The same with at most so many nodes: where a scene is edited, each edit builds all of them.
+    /// References are followed, and a node counts again in each operator that holds it.
     ///
     /// ```
     /// use palpate_scene::{Resources, Scene};
     ///
     /// let text = r#"{ "palpate": 1, "dimension": 2, "bodies": [ { "name": "discs", "shape": { "union":
     ///     [{ "ball": { "radius": 0.02 } }, { "ball": { "radius": 0.03 } }] } } ] }"#;
-    /// assert!(Scene::from_json_in(text, Resources::default().with_most_nodes(3)).is_ok());
-    /// let error = Scene::from_json_in(text, Resources::default().with_most_nodes(2)).unwrap_err();
-    /// assert!(error.to_string().contains("more than 2 nodes"));
+    /// // Two balls, and a union that holds two.
+    /// assert!(Scene::from_json_in(text, Resources::default().with_most_nodes(5)).is_ok());
+    /// let error = Scene::from_json_in(text, Resources::default().with_most_nodes(4)).unwrap_err();
+    /// assert!(error.to_string().contains("more than 4 nodes"));
     /// ```
     #[must_use]
     pub fn with_most_nodes(self, most: usize) -> Self {
