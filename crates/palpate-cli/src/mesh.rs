@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use palpate::grid::Volume;
 use palpate::mesh::{
-    Findings, Format, ReadError, ReadProblem, Solid, SolidError, TriangleMesh, read_file,
+    Findings, Format, MOST_TRIANGLES, ReadError, ReadProblem, Solid, SolidError, TriangleMesh,
+    read_file,
 };
 use palpate::scene::text::rounded;
 use serde::Serialize;
@@ -281,12 +282,15 @@ pub(crate) struct MeshOptions {
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// The largest distance of a triangle from the surface [m], or size of the field on it where the scene's values are
-    /// bounds: cells are as small as it takes.
+    /// bounds: triangles are as large as that allows.
     #[arg(long, requires = "output", allow_negative_numbers = true, value_parser = length, conflicts_with = "cell")]
     pub(crate) tolerance: Option<f64>,
     /// The side of the cells in which vertices lie [m]; a hundredth of the scene if left out.
     #[arg(long, requires = "output", allow_negative_numbers = true, value_parser = length)]
     pub(crate) cell: Option<f64>,
+    /// More triangles than these are refused.
+    #[arg(long, requires = "output", value_name = "COUNT", default_value_t = MOST_TRIANGLES)]
+    pub(crate) most_triangles: usize,
     /// Of a scene, one body instead of all.
     #[arg(long, requires = "output", value_name = "NAME")]
     pub(crate) body: Option<String>,

@@ -37,7 +37,7 @@ mod tree;
 #[cfg(feature = "files")]
 mod write;
 
-pub use contour::{ContourError, ContourOptions, FitProgress, FittedMesh};
+pub use contour::{ContourError, ContourOptions, FitProgress, FittedMesh, MOST_TRIANGLES};
 #[doc(hidden)]
 pub use encoding::utf16_is_little_endian;
 #[doc(hidden)]

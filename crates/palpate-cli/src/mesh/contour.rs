@@ -196,6 +196,7 @@ impl Work<'_> {
         };
         let by = |cell| ContourOptions {
             is_single: self.format.is_single(),
+            most_triangles: self.options.most_triangles,
             ..ContourOptions::with_cell(cell)
         };
         let longest = longest_edge(&bounds.aabb);

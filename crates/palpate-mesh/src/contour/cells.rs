@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 
 use palpate_field::{Aabb, BLOCK, Block, Column, Point, Shape, Vector};
 
-use super::{ContourError, ContourOptions, deviation};
+use super::{ContourError, ContourOptions, FLAT, deviation};
 use crate::report::is_flat;
 
 /// Cells of a block along an axis: a block far from the surface is passed over.
@@ -314,9 +314,6 @@ impl Crossing {
 /// The four cells around an edge, by the sides of the edge in them along the two axes after its own:
 /// counter-clockwise, seen from the edge's end.
 const AROUND: [[usize; 2]; 4] = [[1, 1], [0, 1], [0, 0], [1, 0]];
-
-/// A triangle of at most this height, as a share of its largest coordinate, is not made where that can be avoided.
-const FLAT: f64 = 1e-7;
 
 /// The vertices around each crossing, counter-clockwise seen from outside; `of_edges` has the vertex of each edge
 /// of each cell.

@@ -18,6 +18,9 @@ const CLOSE: f64 = 1.05;
 /// Parts of triangles that are looked at at most, for each triangle.
 const PARTS: usize = 64;
 
+/// How often the sides of a triangle are halved at most to prove that it is within a tolerance.
+const MOST_HALVINGS: u32 = 8;
+
 /// A part of a triangle, with a bound of the field's size on it.
 struct Part {
     corners: [Point<3>; 3],
@@ -106,7 +109,8 @@ impl TriangleMesh {
     }
 }
 
-struct Search<'a> {
+/// Bounds of a field on triangles.
+pub(super) struct Search<'a> {
     shape: &'a Shape<3>,
     cells: Block<Model, 3, BLOCK>,
     models: Column<Model, BLOCK>,
@@ -117,38 +121,103 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(shape: &'a Shape<3>) -> Self {
+    pub(super) fn new(shape: &'a Shape<3>) -> Self {
         Self { shape, cells: Block::zero(), models: Column::zero(), known: 0.0, parts: 0 }
     }
 
-    /// Adds triangles with their bounds: the model is over the parallelogram of two sides, the bound at the corners
-    /// of the triangle.
+    /// Adds triangles with their bounds.
     fn bound(&mut self, triangles: &[[Point<3>; 3]], heap: &mut BinaryHeap<Part>) {
         for triangles in triangles.chunks(BLOCK) {
-            self.cells.fill(triangles.len(), |i| {
-                let [a, b, c] = triangles[i];
-                let (middle, u, v) = ((b + c) * 0.5, (b - a) * 0.5, (c - a) * 0.5);
-                Vector(std::array::from_fn(|k| {
-                    // The middle and the sides are rounded.
-                    let rounding = 4.0 * f64::EPSILON * (a[k].abs() + b[k].abs() + c[k].abs());
-                    let gradient = [u[k], v[k], 0.0];
-                    Model { value: middle[k], gradient, lower: rounding, upper: rounding }
-                }))
+            let mut known = self.known;
+            let shape = self.shape;
+            self.bounds(triangles, |i, value, bound| {
+                let corners = triangles[i];
+                known = known.max(shape.distance(corners[0]).abs()).max(value.abs());
+                heap.push(Part { corners, bound });
             });
-            self.shape.block_distances(&self.cells, triangles.len(), &mut self.models);
-            self.parts += triangles.len();
-            for (i, corners) in triangles.iter().enumerate() {
-                let Model { value, gradient: [u, v, _], lower, upper } = self.models.get(i);
-                let at = [value - u - v, value + u - v, value - u + v];
-                let high = at.into_iter().fold(f64::NEG_INFINITY, f64::max) + upper;
-                let low = at.into_iter().fold(f64::INFINITY, f64::min) - lower;
-                let bound = high.max(-low) * (1.0 + 1e-12);
-                self.known =
-                    self.known.max(self.shape.distance(corners[0]).abs()).max(value.abs());
-                heap.push(Part { corners: *corners, bound });
-            }
+            self.known = known;
         }
     }
+
+    /// Bounds of the field's size on a block of triangles: `each` gets the number of a triangle, the field at the middle of
+    /// its last two corners, and the bound. The model is over the parallelogram of two sides, the bound at the corners of
+    /// the triangle.
+    fn bounds(&mut self, triangles: &[[Point<3>; 3]], mut each: impl FnMut(usize, f64, f64)) {
+        self.cells.fill(triangles.len(), |i| {
+            let [a, b, c] = triangles[i];
+            let (middle, u, v) = ((b + c) * 0.5, (b - a) * 0.5, (c - a) * 0.5);
+            Vector(std::array::from_fn(|k| {
+                // The middle and the sides are rounded.
+                let rounding = 4.0 * f64::EPSILON * (a[k].abs() + b[k].abs() + c[k].abs());
+                let gradient = [u[k], v[k], 0.0];
+                Model { value: middle[k], gradient, lower: rounding, upper: rounding }
+            }))
+        });
+        self.shape.block_distances(&self.cells, triangles.len(), &mut self.models);
+        self.parts += triangles.len();
+        for i in 0..triangles.len() {
+            let Model { value, gradient: [u, v, _], lower, upper } = self.models.get(i);
+            let at = [value - u - v, value + u - v, value - u + v];
+            let high = at.into_iter().fold(f64::NEG_INFINITY, f64::max) + upper;
+            let low = at.into_iter().fold(f64::INFINITY, f64::min) - lower;
+            each(i, value, high.max(-low) * (1.0 + 1e-12));
+        }
+    }
+
+    /// Whether the field is proven to be at most `tolerance` [m] in size on each of the triangles.
+    pub(super) fn are_within(
+        &mut self,
+        triangles: &[[Point<3>; 3]],
+        tolerance: f64,
+    ) -> Vec<bool> {
+        let mut are_within = vec![true; triangles.len()];
+        let whole = triangles.iter().enumerate();
+        let mut open: Vec<_> =
+            whole.map(|(of, corners)| Piece { of, halvings: 0, corners: *corners }).collect();
+        let (mut block, mut corners) = (Vec::with_capacity(BLOCK), Vec::with_capacity(BLOCK));
+        while !open.is_empty() {
+            block.clear();
+            while block.len() < BLOCK
+                && let Some(piece) = open.pop()
+            {
+                if are_within[piece.of] {
+                    block.push(piece);
+                }
+            }
+            corners.clear();
+            corners.extend(block.iter().map(|piece| piece.corners));
+            self.bounds(&corners, |i, value, bound| {
+                let Piece { of, halvings, corners: [a, b, c] } = block[i];
+                // Written so that NaN is not within.
+                let is_within = bound <= tolerance;
+                if is_within {
+                    return;
+                }
+                let may_be = value.abs() <= tolerance && halvings < MOST_HALVINGS;
+                are_within[of] &= may_be;
+                if may_be {
+                    let [ab, bc, ca] = [(a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
+                    let quarters = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
+                    open.extend(quarters.map(|corners| Piece {
+                        of,
+                        halvings: halvings + 1,
+                        corners,
+                    }));
+                }
+            });
+        }
+        are_within
+    }
+}
+
+/// A part of a triangle that is not proven to be within a tolerance.
+#[derive(Clone, Copy)]
+struct Piece {
+    /// The number of the triangle.
+    of: usize,
+    /// How often its sides were halved.
+    halvings: u32,
+    corners: [Point<3>; 3],
 }
 
 /// Steps towards the surface, and beyond it.

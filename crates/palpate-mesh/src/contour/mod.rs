@@ -10,6 +10,11 @@
 
 mod cells;
 mod deviation;
+mod fit;
+mod refine;
+mod sharp;
+mod simplify;
+mod surface;
 mod vertex;
 
 use std::collections::HashMap;
@@ -20,7 +25,7 @@ use palpate_field::{Point, Shape};
 use crate::mesh::{MeshError, TriangleMesh, single};
 use crate::solid::crossing_faces;
 use cells::{Cells, Crossing, EDGES, NONE, Patches, Signed};
-pub use vertex::{FitProgress, FittedMesh};
+pub use fit::{FitProgress, FittedMesh};
 
 /// Cells around the bounds of the shape, on each side.
 const AROUND: f64 = 1.5;
@@ -32,11 +37,17 @@ const CROSSING: f64 = 0.5;
 /// Cells from one look at whether to stop to the next.
 const A_LOOK: usize = 1024;
 
+/// A triangle of at most this height, as a share of its largest coordinate, is not made where that can be avoided.
+const FLAT: f64 = 1e-7;
+
 /// How often vertices of faces that cross are moved.
 const MOST_MENDS: usize = 8;
 
 /// How far vertices in single precision are moved first, as shares of the way to the middles of their patches.
 const NUDGES: [f64; 2] = [1e-4, 1e-2];
+
+/// The most triangles of a mesh of a shape, unless its options say another number.
+pub const MOST_TRIANGLES: usize = 10_000_000;
 
 /// What a mesh of a shape is asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,16 +58,19 @@ pub struct ContourOptions {
     pub node: Option<Point<3>>,
     /// More cells than these near the surface are refused.
     pub most_cells: usize,
+    /// More triangles than these are refused.
+    pub most_triangles: usize,
     /// Whether vertices are in single precision, as files of STL and GLB hold them: faces that cross where they are
     /// rounded are mended as others are.
     pub is_single: bool,
 }
 
 impl ContourOptions {
-    /// Cells of a size [m], at most 2²⁶ of them near the surface: a mesh of about ten million triangles.
+    /// Cells of a size [m], at most 2²⁶ of them near the surface, and at most [`MOST_TRIANGLES`].
     #[must_use]
     pub const fn with_cell(cell: f64) -> Self {
-        Self { cell, node: None, most_cells: 1 << 26, is_single: false }
+        let (most_cells, most_triangles) = (1 << 26, MOST_TRIANGLES);
+        Self { cell, node: None, most_cells, most_triangles, is_single: false }
     }
 }
 
@@ -86,6 +100,14 @@ pub enum ContourError {
     TooMany {
         /// The size of a cell [m].
         cell: f64,
+        /// How many are allowed.
+        limit: usize,
+    },
+    /// There are more triangles than allowed.
+    #[error(
+        "the mesh has more than the {limit} triangles allowed; take a larger tolerance or larger cells, or allow more"
+    )]
+    TooManyTriangles {
         /// How many are allowed.
         limit: usize,
     },
@@ -204,7 +226,7 @@ fn made(
         return Err(ContourError::NoSurface { cell });
     }
     let mut found = |share| progress(looking + share * crossing);
-    let contour = Contour::of(shape, &cells, &signed, &mut found)?;
+    let contour = Contour::of(shape, &cells, &signed, options.most_triangles, &mut found)?;
     let mesh = contour.mesh(shape, options.is_single, &mut |share| {
         progress(looking + crossing + share * (1.0 - looking - crossing))
     })?;
@@ -231,6 +253,7 @@ impl Contour {
         shape: &Shape<3>,
         cells: &Cells,
         signed: &[Signed],
+        most_triangles: usize,
         progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Self, ContourError> {
         let patches = Patches::of(signed);
@@ -267,6 +290,9 @@ impl Contour {
             }));
         }
         let quads = cells::quads(signed, &of_edges);
+        if 2 * quads.len() > most_triangles {
+            return Err(ContourError::TooManyTriangles { limit: most_triangles });
+        }
         Ok(Self { corners, quads })
     }
 

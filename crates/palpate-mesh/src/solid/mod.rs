@@ -4,7 +4,7 @@
 //! The solid that a mesh bounds.
 
 use faces::{Boxes, Normals};
-use field::{Foot, Part, Walls, foot};
+use field::{Foot, Part, Walls};
 use palpate_field::scalar::AffineModel;
 use palpate_field::{
     Aabb, Deviation, LARGEST_LENGTH, Point, Promise, Quality, SMALLEST_LENGTH, Vector, Wide,
@@ -22,7 +22,7 @@ use crate::solid::faces::Faces;
 use crate::tree::BallTree;
 
 pub use field::MeshSheet;
-pub(crate) use field::across;
+pub(crate) use field::{across, foot};
 pub use findings::{Cracks, Findings};
 pub use repair::Opening;
 pub(crate) use repair::crossing_faces;

@@ -237,3 +237,109 @@ fn faces_that_touch_by_rounding_are_moved_apart_by_little() {
     let (_, findings) = Solid::from_mesh(&mesh).unwrap();
     assert_eq!(findings.crossings + findings.touching, 0, "{findings}");
 }
+
+fn tolerance_shapes() -> Vec<(&'static str, Shape<3>)> {
+    let cube = Shape::cuboid([1.5; 3]).unwrap();
+    let cylinder = Shape::cylinder(0.4, 2.0).unwrap();
+    let axis = |axis| {
+        let turn = Rotation::from_axis_angle(axis, TAU / 4.0).unwrap();
+        Shape::cylinder(0.5, 3.0).unwrap().rotated(turn).unwrap()
+    };
+    let tutorial = (Shape::sphere(1.0).unwrap() & cube.clone())
+        - (Shape::cylinder(0.5, 3.0).unwrap() | axis([1.0, 0.0, 0.0]) | axis([0.0, 0.0, 1.0]));
+    vec![("drilled", cube - cylinder), ("tutorial", tutorial)]
+}
+
+/// Today's meshing by cells alone took 2.5 million triangles, or failed.
+#[test]
+fn a_tolerance_takes_few_triangles() {
+    let go_on = &mut |_| ControlFlow::Continue(());
+    for (name, shape) in tolerance_shapes() {
+        let size = longest(&shape);
+        let tolerance = 1e-3 * size;
+        for is_single in [false, true] {
+            let options = ContourOptions { is_single, ..ContourOptions::with_cell(size) };
+            let fitted = FittedMesh::by_tolerance(&shape, tolerance, &options, go_on).unwrap();
+            let mesh = fitted.within(tolerance).unwrap();
+            let count = mesh.elements().len();
+            assert!(count < 6000, "{name}: {count} triangles");
+            let report = mesh.report();
+            assert!(report.is_watertight() && report.degenerate == 0, "{name}: {report}");
+            let (solid, findings) = Solid::from_mesh(&mesh).unwrap();
+            assert_eq!(findings.crossings + findings.touching, 0, "{name}: {findings}");
+            // The surface is as near to the mesh: nothing of it was cut off.
+            let solid: Shape<3> = solid.into();
+            let fine =
+                TriangleMesh::of_shape(&shape, &ContourOptions::with_cell(0.03)).unwrap();
+            for vertex in fine.vertices() {
+                let Some(on) = shape.surface_point(*vertex) else { continue };
+                let off = solid.distance(on).abs();
+                assert!(off < 2.0 * tolerance, "{name}: {on:?} is {off} m away");
+            }
+        }
+    }
+}
+
+/// Cells gave a box thousands of triangles.
+#[test]
+fn flat_faces_get_large_triangles() {
+    let turn = Rotation::from_axis_angle([1.0, 2.0, 3.0], 0.7).unwrap();
+    let cuboid = Shape::cuboid([0.5, 0.3, 0.4]).unwrap();
+    let frame = cuboid.clone() - Shape::cuboid([0.3, 0.1, 0.5]).unwrap();
+    for (shape, most) in [(cuboid, 60), (frame, 120)] {
+        for shape in [shape.clone(), shape.rotated(turn).unwrap()] {
+            let options = ContourOptions::with_cell(1.0);
+            let go_on = &mut |_| ControlFlow::Continue(());
+            let mesh = FittedMesh::by_tolerance(&shape, 5e-4, &options, go_on).unwrap();
+            let mesh = mesh.within(5e-4).unwrap();
+            assert!(mesh.elements().len() <= most, "{} triangles", mesh.elements().len());
+        }
+    }
+}
+
+#[test]
+fn random_trees_are_fitted_or_refused() {
+    let mut fitted = 0;
+    cases::check(40, |u| {
+        let Ok(shape) = tree::<3>(u, 3)?.shape() else { return Ok(Ok(())) };
+        if shape.promise().bounds.is_none() {
+            return Ok(Ok(()));
+        }
+        let size = longest(&shape);
+        let mut options = ContourOptions::with_cell(size);
+        options.most_triangles = 100_000;
+        options.most_cells = 1 << 18;
+        let go_on = &mut |_| ControlFlow::Continue(());
+        let made = FittedMesh::by_tolerance(&shape, 1e-2 * size, &options, go_on);
+        let Ok(made) = made else { return Ok(Ok(())) };
+        let Ok(mesh) = made.within(1e-2 * size) else { return Ok(Ok(())) };
+        fitted += 1;
+        let [found, _] = mesh.largest_distance(&shape);
+        if found > 1e-2 * size {
+            return Ok(Err(format!("{found} m of {size} m")));
+        }
+        Ok(match Solid::from_mesh(&mesh) {
+            Ok((_, findings)) if findings.crossings + findings.touching == 0 => Ok(()),
+            Ok((_, findings)) => Err(findings.to_string()),
+            Err(error) => Err(error.to_string()),
+        })
+    });
+    assert!(fitted >= cases::count(10), "{fitted}");
+}
+
+#[test]
+fn too_many_triangles_are_refused_with_advice() {
+    let ball = Shape::sphere(0.5).unwrap();
+    let options = ContourOptions { most_triangles: 20_000, ..ContourOptions::with_cell(1.0) };
+    let go_on = &mut |_| ControlFlow::Continue(());
+    let error = FittedMesh::by_tolerance(&ball, 1e-6, &options, go_on).unwrap_err();
+    assert_eq!(error, ContourError::TooManyTriangles { limit: 20_000 });
+    assert!(error.to_string().contains("take a larger tolerance or larger cells"), "{error}");
+    let cells = ContourOptions { cell: 0.005, ..options };
+    assert_eq!(TriangleMesh::of_shape(&ball, &cells).unwrap_err(), error);
+}
+
+fn longest(shape: &Shape<3>) -> f64 {
+    let bounds = shape.promise().bounds.unwrap().aabb;
+    bounds.half_extents().0.into_iter().fold(0.0, f64::max) * 2.0
+}
