@@ -4,6 +4,7 @@
 //! Mass, and meshes of shapes.
 
 use palpate::field::{Mass, MassLimits};
+use palpate::mesh::{ContourOptions, MOST_TRIANGLES};
 use pyo3::prelude::*;
 
 use crate::answers::Fields;
@@ -57,11 +58,11 @@ impl PyShape {
     /// The surface in triangles, closed, facing outwards, with sharp edges; of shapes in space.
     ///
     /// Either `cell` is the size of the cells [m]: parts thinner than two may be lost. Or `tolerance` is how large the
-    /// field on a triangle may be [m], of an exact shape how far a triangle may be from the surface: cells are made
-    /// smaller until that is proven.
+    /// field on a triangle may be [m], of an exact shape how far a triangle may be from the surface: triangles are
+    /// as large as that allows, which is proven. `most_triangles`, ten million if left out, refuses larger meshes.
     ///
-    /// Raises `MeshError` if the shape has no bounds, no cell sees the surface or the tolerance is not reached,
-    /// `TypeError` unless one of `cell` and `tolerance` is given.
+    /// Raises `MeshError` if the shape has no bounds, no cell sees the surface, the tolerance is not reached or the
+    /// triangles are too many, `TypeError` unless one of `cell` and `tolerance` is given.
     ///
     /// >>> import palpate as pp
     /// >>> mesh = pp.cuboid([0.3, 0.2, 0.1]).mesh(cell=0.017)
@@ -70,14 +71,22 @@ impl PyShape {
     /// >>> near = pp.ball(0.5).mesh(tolerance=1e-3)
     /// >>> bool(abs(pp.ball(0.5).distance(near.vertices)).max() <= 1e-3)
     /// True
-    #[pyo3(signature = (*, cell = None, tolerance = None))]
+    #[pyo3(signature = (*, cell = None, tolerance = None, most_triangles = None))]
     fn mesh(
         &self,
         py: Python<'_>,
         cell: Option<f64>,
         tolerance: Option<f64>,
+        most_triangles: Option<usize>,
     ) -> PyResult<PyMesh> {
-        mesh::of_shape(py, &self.solid(py, "mesh")?, cell, tolerance)
+        let most_triangles = most_triangles.unwrap_or(MOST_TRIANGLES);
+        let of = |cell| ContourOptions { most_triangles, ..ContourOptions::with_cell(cell) };
+        mesh::of_shape(
+            py,
+            &self.solid(py, "mesh")?,
+            cell.map(of),
+            tolerance.map(|t| (t, of(f64::INFINITY))),
+        )
     }
 }
 

@@ -392,20 +392,18 @@ fn of_arrays<const N: usize, const D: usize>(
 pub(crate) fn of_shape(
     py: Python<'_>,
     shape: &Shape<3>,
-    cell: Option<f64>,
-    tolerance: Option<f64>,
+    by_cells: Option<ContourOptions>,
+    by_tolerance: Option<(f64, ContourOptions)>,
 ) -> PyResult<PyMesh> {
     let pool = pool::of_at_least_one(1)?;
-    let mesh = match (cell, tolerance) {
-        (Some(cell), None) => {
-            let options = ContourOptions::with_cell(cell);
+    let mesh = match (by_cells, by_tolerance) {
+        (Some(options), None) => {
             let made = interruptible(py, &pool, |stop| {
                 TriangleMesh::of_shape_with(shape, &options, &mut |_| unless_asked(stop))
             })?;
             made.or_raise(py)?
         }
-        (None, Some(tolerance)) => {
-            let options = ContourOptions::with_cell(f64::INFINITY);
+        (None, Some((tolerance, options))) => {
             let made = interruptible(py, &pool, |stop| {
                 let mut progress = |_| unless_asked(stop);
                 let fitted =

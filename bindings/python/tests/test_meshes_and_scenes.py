@@ -161,6 +161,11 @@ def test_faces_that_bound_nothing_are_a_plate() -> None:
         (lambda: MESH.save("no/such/folder/part.stl"), OSError, ""),
         (lambda: BOX.mesh(cell=-1), pp.MeshError, "cell"),
         (lambda: BOX.mesh(tolerance=0), pp.MeshError, "tolerance"),
+        (
+            lambda: pp.ball(0.5).mesh(tolerance=1e-6, most_triangles=20_000),
+            pp.MeshError,
+            "more than the 20000 triangles allowed",
+        ),
         (lambda: BOX.mesh(), TypeError, "one of cell= and tolerance="),
         (lambda: pp.mesh_hits(pp.ball(1, dimension=2), MESH), ValueError, "got 2D and 3D"),
         (lambda: pp.half_space([0, 1, 0], 0.0).mesh(cell=0.1), pp.MeshError, "bounds"),

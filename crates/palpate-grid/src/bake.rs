@@ -568,7 +568,7 @@ impl<const D: usize> Bake<'_, D> {
             Resolution::Cell(_) => ENOUGH * cell,
             Resolution::Tolerance(tolerance) => tolerance.min(ENOUGH * cell),
         };
-        Cells { lattice, source: Some(self.source), within, reach, worst, enough }
+        Cells { lattice, source: Some(self.source), within, reach, stored, worst, enough }
     }
 }
 

@@ -56,6 +56,8 @@ pub(crate) struct Cells<'a, const D: usize> {
     pub(crate) within: f64,
     /// How far a sample may be from the source's value at a point whose value takes the sample [m].
     pub(crate) reach: f64,
+    /// How far a sample may be from the source's value at its node [m].
+    pub(crate) stored: f64,
     /// A bound of the deviation that holds whatever the samples are [m].
     pub(crate) worst: f64,
     /// No smaller deviation is looked for [m].
@@ -65,7 +67,15 @@ pub(crate) struct Cells<'a, const D: usize> {
 impl<'a, const D: usize> Cells<'a, D> {
     /// The cells of samples that stand for themselves.
     pub(crate) fn without_source(lattice: &'a Lattice<D>) -> Self {
-        Self { lattice, source: None, within: 0.0, reach: 0.0, worst: 0.0, enough: 0.0 }
+        Self {
+            lattice,
+            source: None,
+            within: 0.0,
+            reach: 0.0,
+            stored: 0.0,
+            worst: 0.0,
+            enough: 0.0,
+        }
     }
 
     /// The certificate of a brick.
@@ -274,6 +284,20 @@ impl<const D: usize> Part<D> {
     }
 }
 
+/// Replaces the samples of a part's cell by the control values over the part.
+fn control<const K: usize, const D: usize>(taps: &mut [f64], part: &Part<D>)
+where
+    OfTaps<K>: Spline<K>,
+{
+    for axis in 0..D {
+        apply::<K, D>(taps, axis, &OfTaps::<K>::VALUES);
+        for level in (0..part.level).rev() {
+            let side = (part.number[axis] >> level) & 1;
+            apply::<K, D>(taps, axis, &OfTaps::<K>::HALVES[side]);
+        }
+    }
+}
+
 /// Parts are in the order of their bounds.
 impl<const D: usize> Ord for Part<D> {
     fn cmp(&self, other: &Self) -> Ordering {
@@ -373,7 +397,14 @@ impl<const D: usize> Cells<'_, D> {
         let mut waiting = BinaryHeap::new();
         let mut parts = self.compared::<K>(brick, samples);
         loop {
-            for parts in parts.chunks_mut(BLOCK) {
+            // Samples alone bound what edges of the source make of a cell: models, which take much longer, bound the rest.
+            let wanted = largest.max(self.enough);
+            for part in parts.iter_mut().filter(|part| part.level > 0) {
+                part.bound = part.bound.min(self.bound_by_samples::<K>(source, samples, part));
+            }
+            parts.sort_by(|a, b| b.cmp(a));
+            let open = parts.partition_point(|part| part.level == 0 || part.bound > wanted);
+            for parts in parts[..open].chunks_mut(BLOCK) {
                 self.bound_parts::<K>((source, brick, samples), parts, &mut work);
             }
             for part in parts.drain(..) {
@@ -423,6 +454,41 @@ impl<const D: usize> Cells<'_, D> {
         }
     }
 
+    /// How far the values over a part may be from the source's [m], by the samples and the steepness of the source alone:
+    /// at the middle of the part, the source is within what each sample and the way to it allow.
+    fn bound_by_samples<const K: usize>(
+        &self,
+        source: &Shape<D>,
+        samples: &[f64],
+        part: &Part<D>,
+    ) -> f64
+    where
+        OfTaps<K>: Spline<K>,
+    {
+        let mut taps = [0.0; MOST_TAPS];
+        let taps = &mut taps[..K.pow(D as u32)];
+        gather::<K, D>(samples, part.place, taps);
+        let (middle, lipschitz) = (part.middle(), source.promise().lipschitz);
+        let [mut low, mut high] = [f64::NEG_INFINITY, f64::INFINITY];
+        let mut size = 0.0_f64;
+        for (number, tap) in taps.iter().enumerate() {
+            let index: [usize; D] = unravelled(number, [K; D]);
+            let away = |axis: usize| index[axis] as f64 - 0.5 * (K - 1) as f64 - middle[axis];
+            let away: f64 = (0..D).map(|axis| away(axis) * away(axis)).sum();
+            let apart = lipschitz * away.sqrt() * self.lattice.cell;
+            (low, high) = (low.max(tap - apart), high.min(tap + apart));
+            size = size.max(tap.abs() + apart);
+        }
+        control::<K, D>(taps, part);
+        let above = taps.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low;
+        let below = high - taps.iter().copied().fold(f64::INFINITY, f64::min);
+        // From the middle to a corner of the part.
+        let within = lipschitz * (D as f64).sqrt() * self.half(part.level);
+        let within = within + 2.0 * source.promise().rounding.within(self.far());
+        (above.max(below) + within + self.stored + ROUNDED * f64::EPSILON * size)
+            * (1.0 + 1e-12)
+    }
+
     /// How far the values over a part may be from the source's [m], by the source's model.
     fn bound<const K: usize>(&self, samples: &[f64], part: &Part<D>, model: &Model) -> f64
     where
@@ -442,13 +508,7 @@ impl<const D: usize> Cells<'_, D> {
             };
             *tap -= model.value + (0..D).map(along).sum::<f64>();
         }
-        for axis in 0..D {
-            apply::<K, D>(taps, axis, &OfTaps::<K>::VALUES);
-            for level in (0..part.level).rev() {
-                let side = (part.number[axis] >> level) & 1;
-                apply::<K, D>(taps, axis, &OfTaps::<K>::HALVES[side]);
-            }
-        }
+        control::<K, D>(taps, part);
         let above = taps.iter().copied().fold(f64::NEG_INFINITY, f64::max) + model.lower;
         let below = model.upper - taps.iter().copied().fold(f64::INFINITY, f64::min);
         // The model is about the middle as it is rounded, the samples about the middle itself.
@@ -462,10 +522,14 @@ impl<const D: usize> Cells<'_, D> {
         0.5 * self.lattice.cell / f64::from(1 << level) * (1.0 + 1e-12) + self.misplaced()
     }
 
+    /// No point of the lattice is farther from the origin [m].
+    fn far(&self) -> f64 {
+        let Lattice { origin, cell, counts } = self.lattice;
+        (0..D).map(|i| origin[i].abs() + counts[i] as f64 * cell).sum()
+    }
+
     /// How far rounding may move the middle of a part [m].
     fn misplaced(&self) -> f64 {
-        let Lattice { origin, cell, counts } = self.lattice;
-        let far = (0..D).map(|i| origin[i].abs() + counts[i] as f64 * cell).fold(0.0, f64::max);
-        8.0 * f64::EPSILON * far
+        8.0 * f64::EPSILON * self.far()
     }
 }

@@ -209,3 +209,26 @@ fn scales() -> Vec<Hard> {
     let [huge, tiny] = [1e15, 1e-9].map(|size| ball.clone().scaled(size));
     vec![hard("1e15 m", huge.clone(), huge), hard("1e-9 m", tiny.clone().inside_out(), tiny)]
 }
+
+/// A gear of 24 teeth with an outline of `count` corners, 2 cm thick: two long triangles on the side of each edge, and
+/// one on each cap, from the middle.
+#[must_use]
+pub fn gear(count: u32) -> Soup {
+    let corner = |i: u32| {
+        let angle = std::f64::consts::TAU * f64::from(i) / f64::from(count);
+        let radius = 0.04 + 0.004 * (4.0 * (24.0 * angle).sin()).tanh();
+        [radius * angle.cos(), radius * angle.sin()]
+    };
+    let mut vertices = Vec::new();
+    for z in [-0.01, 0.01] {
+        vertices.push(Vector([0.0, 0.0, z]));
+        vertices.extend((0..count).map(corner).map(|[x, y]| Vector([x, y, z])));
+    }
+    let top = count + 1;
+    let faces = (0..count).flat_map(|i| {
+        let [a, b] = [i, (i + 1) % count].map(|i| i + 1);
+        let [c, d] = [a + top, b + top];
+        [[a, b, d], [a, d, c], [0, b, a], [top, c, d]]
+    });
+    Soup { vertices, faces: faces.collect() }
+}

@@ -177,7 +177,13 @@ class Shape:
         tolerance: float | None = None,
         cells: int | None = None,
     ) -> Mass: ...
-    def mesh(self, *, cell: float | None = None, tolerance: float | None = None) -> Mesh: ...
+    def mesh(
+        self,
+        *,
+        cell: float | None = None,
+        tolerance: float | None = None,
+        most_triangles: int | None = None,
+    ) -> Mesh: ...
     def baked(
         self,
         *,

@@ -66,9 +66,13 @@ impl FittedMesh {
         Self { mesh, cell, error: [0.0; 2], lost }.measured(shape, f64::INFINITY, progress)
     }
 
-    /// A mesh of which no triangle has a larger field than `tolerance` [m]: cells, at most as large as those of the
-    /// options, are made smaller until that is proven and no part is known to be [lost](Self::lost). What a dozen tries do
-    /// not reach is left open: the error of the answer is then larger, or it says what is lost. `progress` can stop the work.
+    /// A mesh of which no triangle has a larger field than `tolerance` [m], which is proven.
+    ///
+    /// Cells of at most the size of the options find the surface. Vertices are moved onto edges and corners of the shape,
+    /// edges are split where they are too far from it, and collapsed where the tolerance allows it: flat faces get large
+    /// triangles. Where that does not come within the tolerance, or a part is [lost](Self::lost), smaller cells are tried.
+    /// What a dozen tries do not reach is left open: the error of the answer is then larger, or it says what is lost.
+    /// `progress` can stop the work.
     ///
     /// ```
     /// use std::ops::ControlFlow;

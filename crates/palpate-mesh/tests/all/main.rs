@@ -10,6 +10,7 @@ mod files;
 mod gltf;
 mod hard;
 mod joins;
+mod long_faces;
 mod planes;
 mod samples;
 mod solids;
