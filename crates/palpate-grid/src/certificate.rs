@@ -397,7 +397,7 @@ impl<const D: usize> Cells<'_, D> {
         let mut waiting = BinaryHeap::new();
         let mut parts = self.compared::<K>(brick, samples);
         loop {
-            // Samples alone bound what edges of the source make of a cell: models, which take much longer, bound the rest.
+            // Samples alone bound most parts at edges of the source. Models take much longer and bound the rest.
             let wanted = largest.max(self.enough);
             for part in parts.iter_mut().filter(|part| part.level > 0) {
                 part.bound = part.bound.min(self.bound_by_samples::<K>(source, samples, part));

@@ -187,7 +187,7 @@ impl TriangleMesh {
     ///
     /// # Errors
     ///
-    /// If the shape has no bounds, no surface is found, there are too many cells, or a value is no number.
+    /// If the shape has no bounds, no surface is found, there are too many cells or triangles, or a value is no number.
     pub fn of_shape(shape: &Shape<3>, options: &ContourOptions) -> Result<Self, ContourError> {
         Self::of_shape_with(shape, options, &mut |_| ControlFlow::Continue(()))
     }

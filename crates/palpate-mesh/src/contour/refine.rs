@@ -19,7 +19,7 @@ use crate::solid::across;
 /// Rounds of splits at most.
 const ROUNDS: usize = 40;
 
-/// Rounds after which the largest error must have fallen to this share, or the surface has no such triangles.
+/// After so many rounds the errors of all open faces must sum to at most this share. Else smaller cells are needed.
 const PATIENCE: usize = 6;
 const FALL: f64 = 0.7;
 
@@ -35,13 +35,13 @@ const GAIN: f64 = 0.9;
 /// A new vertex is at least this share of the edge from its ends.
 const INSET: f64 = 0.05;
 
-/// The least cosine between the slopes at two ends of an edge between which no edge of the shape is looked for.
+/// An edge of the shape may lie between two vertices if the cosine between their slopes is less than this.
 const EVEN: f64 = 0.9;
 
-/// The least cosine between a triangle and the slope that is not folded over.
+/// A triangle is folded over if the cosine between its normal and the slope of the field is less than this.
 const LEAST_COSINE: f64 = -0.3;
 
-/// Two faces lie on each other if the cosine between their normals is less than this.
+/// Two faces overlap if the cosine between their normals is less than this.
 const FOLDS_BACK: f64 = -0.7;
 
 /// Edges of the shape are looked for around a vertex at this share of the way to the nearest other.

@@ -250,7 +250,7 @@ fn tolerance_shapes() -> Vec<(&'static str, Shape<3>)> {
     vec![("drilled", cube - cylinder), ("tutorial", tutorial)]
 }
 
-/// Today's meshing by cells alone took 2.5 million triangles, or failed.
+/// Smaller cells all over took 2.5 million triangles, or failed.
 #[test]
 fn a_tolerance_takes_few_triangles() {
     let go_on = &mut |_| ControlFlow::Continue(());
@@ -280,7 +280,7 @@ fn a_tolerance_takes_few_triangles() {
     }
 }
 
-/// Cells gave a box thousands of triangles.
+/// Cells give a box thousands of triangles; a tolerance gives it a few dozen.
 #[test]
 fn flat_faces_get_large_triangles() {
     let turn = Rotation::from_axis_angle([1.0, 2.0, 3.0], 0.7).unwrap();
